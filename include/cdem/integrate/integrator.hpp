@@ -10,8 +10,9 @@
 #include <cdem/particles/motion.hpp>
 
 #include <concepts>
-#include <functional>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace cdem::integrate {
 
@@ -23,16 +24,17 @@ concept KnowsParticleCount = requires(const F& forces) {
 
 /// `forces.evaluate(displacement, force, pool)` overwrites `force` with the internal forces (N, N m).
 template <class F>
-concept EvaluatesForces =
-    requires(const F& forces, const particles::SpatialField<>& displacement, particles::SpatialField<>& force,
-             core::ThreadPool& pool) { forces.evaluate(displacement, force, pool); };
+concept EvaluatesForces = requires(const F& forces, const particles::SpatialField<>& displacement,
+                                   particles::SpatialField<>& force, core::ThreadPool& pool) {
+  forces.evaluate(displacement, force, pool);
+};
 
 /// `forces.elastic_energy(displacement, pool)` in J, of which the internal forces are minus the gradient.
 template <class F>
-concept GivesElasticEnergy =
-    requires(const F& forces, const particles::SpatialField<>& displacement, core::ThreadPool& pool) {
-      { forces.elastic_energy(displacement, pool) } -> std::convertible_to<double>;
-    };
+concept GivesElasticEnergy = requires(const F& forces, const particles::SpatialField<>& displacement,
+                                      core::ThreadPool& pool) {
+  { forces.elastic_energy(displacement, pool) } -> std::convertible_to<double>;
+};
 
 /// `forces.diagonal_block(i)` is the 6x6 block of the stiffness that couples particle i with itself.
 template <class F>
@@ -42,7 +44,8 @@ concept GivesDiagonalBlock = requires(const F& forces, ParticleIndex i) {
 
 /// The internal forces of a body, as an integrator sees them. Models: bond::LinearForces.
 template <class F>
-concept InternalForces = KnowsParticleCount<F> && EvaluatesForces<F> && GivesElasticEnergy<F> && GivesDiagonalBlock<F>;
+concept InternalForces =
+    KnowsParticleCount<F> && EvaluatesForces<F> && GivesElasticEnergy<F> && GivesDiagonalBlock<F>;
 
 /// What is to be moved: internal forces, inertia, prescribed degrees of freedom and external loads.
 ///
@@ -54,7 +57,8 @@ struct Problem {
   const particles::Constraints& constraints;
   const particles::SpatialField<>* load = nullptr; ///< [particles] N, N m; none when null
 
-  /// @throws core::InvalidInput if the parts are of different sizes, a mass, moment or load is not finite, a mass or
+  /// @throws core::InvalidInput if the parts are of different sizes, a mass, moment or load is not finite, a
+  /// mass or
   ///         moment is not positive, or a constraint names a particle that does not exist
   void validate() const {
     const std::size_t count = forces.particle_count();
@@ -65,7 +69,8 @@ struct Problem {
     core::expect(!load || load->size() == count, "number of loads", load ? load->size() : 0, expected);
     for (std::size_t i = 0; i < count; ++i) {
       core::expect_positive(inertia.mass[i], "mass of particle " + std::to_string(i), "kg");
-      core::expect_positive(inertia.moment[i], "moment of inertia of particle " + std::to_string(i), "kg m^2");
+      core::expect_positive(inertia.moment[i], "moment of inertia of particle " + std::to_string(i),
+                            "kg m^2");
       if (load)
         for (int dof = 0; dof < 6; ++dof)
           core::expect_finite((*load)[i][dof], "load on particle " + std::to_string(i));
@@ -76,23 +81,106 @@ struct Problem {
   }
 };
 
-/// Energies of a body, J. What came in equals what is there: work = kinetic + elastic + dissipated.
+/// Energies of a body, J. What came in equals what is there: initial + work = kinetic + elastic + dissipated.
 struct EnergyLedger {
   double kinetic = 0;       ///< sum of m v^2/2 + I w^2/2
   double elastic = 0;       ///< of the bonds
-  double external_work = 0; ///< of the prescribed motion (reactions) and of the loads, since the start
-  double dissipated = 0;    ///< by damping, since the start
-  double initial = 0;       ///< kinetic and elastic at the start
+  double external_work = 0; ///< of the prescribed motion (reactions) and of the loads, since the first step
+  double dissipated = 0;    ///< by damping, since the first step
+  double initial = 0;       ///< kinetic and elastic at the first step
 
-  /// What is missing or too much, J: 0 for exact bookkeeping.
+  /// What is missing (below 0: too much), J. For velocity Verlet it falls as the square of the time step.
   double imbalance() const { return initial + external_work - kinetic - elastic - dissipated; }
 };
+
+/// Kinetic energy of a body, J. @complexity O(particles)
+inline double kinetic_energy(const particles::Inertia& inertia, const particles::SpatialField<>& velocity,
+                             core::ThreadPool& pool) {
+  return core::parallel_sum(pool, velocity.size(), 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i)
+      sum += 0.5 * (inertia.mass[i] * velocity[i].linear().squaredNorm() +
+                    inertia.moment[i] * velocity[i].angular().squaredNorm());
+    return sum;
+  });
+}
+
+/// The ledger of a motion as it stands. @complexity O(bonds)
+template <InternalForces Forces>
+EnergyLedger energy_ledger(const Problem<Forces>& problem, const particles::Motion& motion,
+                           core::ThreadPool& pool) {
+  return {kinetic_energy(problem.inertia, motion.velocity, pool),
+          problem.forces.elastic_energy(motion.displacement, pool), motion.energy.external_work,
+          motion.energy.dissipated, motion.energy.initial};
+}
 
 /// Where a run stands, shown to its observer after every step.
 struct Step {
   const particles::Motion& motion;
-  /// [particles] N, N m: what must act on each particle from outside; the reaction on a prescribed degree of freedom
-  const particles::SpatialField<>& reaction;
+  /// [constraints] N or N m, in the order of Constraints::list(): what holds or moves each prescribed degree
+  /// of freedom
+  std::span<const double> reaction;
 };
+
+/// How a run ended.
+enum class Ending : std::uint8_t {
+  all_steps, ///< the steps asked for are done
+  observer,  ///< the observer had seen enough
+  tolerance, ///< a static solver met its tolerance
+};
+
+/// What holds or moves each prescribed degree of freedom of a body at rest: minus the internal force and the
+/// load.
+///
+/// @return  [constraints] N or N m, in the order of Constraints::list()
+template <InternalForces Forces>
+std::vector<double> static_reactions(const Problem<Forces>& problem, const particles::Motion& motion,
+                                     core::ThreadPool& pool) {
+  particles::SpatialField<> force(motion.size());
+  problem.forces.evaluate(motion.displacement, force, pool);
+  std::vector<double> reaction;
+  reaction.reserve(problem.constraints.size());
+  for (const auto& constraint : problem.constraints.list())
+    reaction.push_back(-force[constraint.particle][constraint.dof] -
+                       (problem.load ? (*problem.load)[constraint.particle][constraint.dof] : 0));
+  return reaction;
+}
+
+namespace detail {
+/// The least that internal forces are; concepts try integrators on it.
+struct AnyForces {
+  std::size_t particle_count() const;
+  void evaluate(const particles::SpatialField<>&, particles::SpatialField<>&, core::ThreadPool&) const;
+  double elastic_energy(const particles::SpatialField<>&, core::ThreadPool&) const;
+  Eigen::Matrix<double, 6, 6> diagonal_block(ParticleIndex) const;
+};
+static_assert(InternalForces<AnyForces>);
+} // namespace detail
+
+/// Made from its `Parameters`, accounts for itself in a `Report`.
+template <class I>
+concept HasParametersAndReport = requires {
+  typename I::Parameters;
+  typename I::Report;
+}
+&&std::constructible_from<I, typename I::Parameters>;
+
+/// `integrator.run(problem, motion, steps, pool)` advances a motion in time.
+template <class I>
+concept AdvancesMotion = requires(const I& integrator, const Problem<detail::AnyForces>& problem,
+                                  particles::Motion& motion, std::uint64_t steps, core::ThreadPool& pool) {
+  { integrator.run(problem, motion, steps, pool) } -> std::same_as<typename I::Report>;
+};
+
+/// `integrator.solve(problem, motion, pool)` finds the equilibrium at unit time.
+template <class I>
+concept SolvesStatics = requires(const I& integrator, const Problem<detail::AnyForces>& problem,
+                                 particles::Motion& motion, core::ThreadPool& pool) {
+  { integrator.solve(problem, motion, pool) } -> std::same_as<typename I::Report>;
+};
+
+/// A way from forces to displacements. Models: VelocityVerlet.
+template <class I>
+concept Integrator = HasParametersAndReport<I> &&(AdvancesMotion<I> || SolvesStatics<I>);
 
 } // namespace cdem::integrate
