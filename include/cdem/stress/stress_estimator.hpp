@@ -7,6 +7,7 @@
 #include <cdem/particles/particle_set.hpp>
 
 #include <concepts>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct StressField {
   std::vector<Mat3> stress;             ///< [specimens] Pa, tension positive, row = force, column = branch
   std::vector<double> volume;           ///< [specimens] m^3
   std::vector<std::uint32_t> particles; ///< [specimens] number of centres inside
+  Mat3 outside = Mat3::Zero(); ///< sum of f (x) d over what lies in no specimen, N m: lost to the stresses
 
   std::size_t size() const noexcept { return stress.size(); }
 };
