@@ -1,0 +1,331 @@
+#pragma once
+
+/// @file
+/// Random packings by the Lubachevsky–Stillinger algorithm: hard spheres that move, collide and grow.
+
+#include <cdem/core/error.hpp>
+#include <cdem/core/progress.hpp>
+#include <cdem/core/random.hpp>
+#include <cdem/packing/detail/contact_survey.hpp>
+#include <cdem/packing/detail/growing_spheres.hpp>
+#include <cdem/packing/detail/random_start.hpp>
+#include <cdem/packing/packing_generator.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace cdem::packing {
+
+/// What bounds the cube that is packed.
+enum class Boundary : std::uint8_t {
+  periodic, ///< the opposite face follows
+  walls     ///< six flat, hard walls
+};
+
+/// Why the growth of a packing ended.
+enum class StopReason : std::uint8_t {
+  density_reached, ///< the density asked for
+  pressure_limit,  ///< jammed before
+  stalled ///< time stood still in spite of all efforts: a rounding problem, never seen at the default limit
+};
+
+/// "density reached", "pressure limit" or "stalled".
+constexpr std::string_view to_string(StopReason reason) {
+  switch (reason) {
+  case StopReason::density_reached:
+    return "density reached";
+  case StopReason::pressure_limit:
+    return "pressure limit";
+  case StopReason::stalled:
+    break;
+  }
+  return "stalled";
+}
+
+/// Event-driven packing of hard spheres whose radii grow in proportion (Lubachevsky and Stillinger 1990; polydisperse:
+/// Kansal, Torquato and Stillinger 2002), the packing of [L17] section 2.1.
+///
+/// Spheres of equal mass start at random in a loose arrangement with Maxwellian velocities, fly straight, and collide
+/// elastically while every radius grows at a rate in proportion to itself, so that the distribution keeps its shape.
+/// Collisions are found exactly and handled in the order of time. Growth adds energy; the velocities are scaled back
+/// to the same temperature every few collisions. It ends at the very moment the density is reached, or jammed.
+/// @complexity  O(1) per collision; about 300 bytes a sphere. Slow growth needs collisions as 1/growth_rate.
+class LubachevskyStillinger {
+public:
+  struct Parameters {
+    std::uint32_t particles = 10000; ///< number of spheres, 1 to 1e8
+    double density = 0.64;           ///< wanted: volume of the spheres over that of the cube, walls included
+    /// Standard deviation over mean of the normal law of the radii, 0 to 0.5. The cuts below make the
+    /// sample's lower: 0.296 for 0.3 cut at 3 standard deviations.
+    double cov = 0.3;
+    double truncation = 3; ///< radii further from the mean than this many standard deviations are drawn again
+    double smallest_radius = 0.1; ///< so are radii below this part of the mean; if this cuts, the mean rises
+    double growth_rate =
+        0.03; ///< rate of the mean diameter over the thermal speed sqrt(kT/m): slower is denser
+    double fluid_growth_rate =
+        0.3; ///< the same at densities below 0.5, where spheres mix fast; raised to growth_rate
+    /// Ends the run when PV/NkT is above. At 1e8 the density is within 3e-8 of that of the jammed packing, so that a
+    /// higher limit gains nothing; at most 1e12, where gaps are as small as rounding errors.
+    double pressure_limit = 1e8;
+    double side = 0.01; ///< edge of the cube, m
+    Boundary boundary = Boundary::periodic;
+    std::uint64_t seed = 1; ///< the same seed gives the same bytes
+  };
+
+  struct Report {
+    StopReason reason = StopReason::stalled;
+    double wanted_density = 0;
+    double density = 0; ///< spheres' volume over the cube's
+    /// Reduced pressure PV/NkT of the last collisions (at least one a sphere), from the virial with its kinetic part.
+    double pressure = 0;
+    std::uint64_t collisions = 0;       ///< of two spheres, or of one with a wall
+    double collisions_per_particle = 0; ///< collisions / particles
+    std::uint64_t events = 0;           ///< collisions, renewals of neighbour lists and second looks
+    double events_per_second = 0;       ///< events / wall_seconds
+    double wall_seconds = 0;            ///< all of pack()
+    /// Largest overlap over the sum of the two radii (at a wall: over the radius), found by a search over the result.
+    double largest_overlap = 0;
+    double contact_tolerance =
+        0; ///< gaps below this part of the sum of the radii are contacts: 30/pressure, at most 0.01
+    std::uint32_t rattlers = 0; ///< spheres with fewer than four contacts, taken out again and again
+    double contact_number = 0;  ///< mean number of contacts of the others; 6 when jammed
+    double mean_radius = 0;     ///< of the sample, m
+    double cov = 0;             ///< of the sample's radii
+
+    /// Whether the wanted density was reached.
+    bool reached() const noexcept { return reason == StopReason::density_reached; }
+
+    /// @throws core::NotReached  if the wanted density was not reached; names it, the density reached and the pressure
+    void require_reached() const {
+      if (!reached())
+        throw core::NotReached("density " + core::to_text(wanted_density) +
+                               " was not reached: " + std::string(to_string(reason)) + " at density " +
+                               core::to_text(density) + ", reduced pressure " + core::to_text(pressure) +
+                               "; a lower density or a smaller growth rate is needed");
+    }
+  };
+
+  /// @throws core::InvalidInput  if a parameter is out of its range, the density is beyond the densest packing
+  ///         (equal spheres: pi/sqrt(18)), or the spheres would be too large for the box: periodic images may not
+  ///         see each other, so the largest diameter must stay below 0.45 of the side (walls: below the side)
+  explicit LubachevskyStillinger(const Parameters& parameters) : parameters_(parameters) { validate(); }
+
+  const Parameters& parameters() const noexcept { return parameters_; }
+
+  /// Packs the spheres. Their order follows no rule that has to do with their radii.
+  /// @throws core::Interrupted  when the monitor asks to stop
+  Packing<Report> pack(const core::Monitor& monitor = core::Monitor()) const {
+    const auto start = Clock::now();
+    core::Random random(parameters_.seed);
+    detail::GrowingSpheres spheres = start_loose(random);
+    Report report;
+    report.wanted_density = parameters_.density;
+    grow(spheres, report, monitor);
+    Packing<Report> packing = result(spheres);
+    packing.report = report;
+    complete(packing, start);
+    return packing;
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  static constexpr double start_density = 0.2;
+  static constexpr double fluid_density = 0.5; // just above the freezing point of equal spheres, 0.494
+  static constexpr double densest = std::numbers::pi / (3 * std::numbers::sqrt2);
+
+  bool periodic() const { return parameters_.boundary == Boundary::periodic; }
+  double lower_cut() const {
+    return std::max(1 - parameters_.truncation * parameters_.cov, parameters_.smallest_radius);
+  }
+  double upper_cut() const { return 1 + parameters_.truncation * parameters_.cov; }
+
+  void validate() const;
+  detail::GrowingSpheres start_loose(core::Random& random) const;
+  void grow(detail::GrowingSpheres& spheres, Report& report, const core::Monitor& monitor) const;
+  Packing<Report> result(const detail::GrowingSpheres& spheres) const;
+  void complete(Packing<Report>& packing, Clock::time_point start) const;
+
+  Parameters parameters_;
+};
+
+inline void LubachevskyStillinger::validate() const {
+  const Parameters& p = parameters_;
+  core::expect(p.particles >= 1 && p.particles <= 100000000, "number of particles", p.particles,
+               "1 to 100000000 is expected");
+  core::expect(p.cov >= 0 && p.cov <= 0.5, "CoV of the radii", p.cov, "0 to 0.5 is expected");
+  core::expect(p.truncation >= 1 && p.truncation <= 6, "truncation", p.truncation,
+               "1 to 6 standard deviations is expected");
+  core::expect(p.smallest_radius >= 0.01 && p.smallest_radius <= 0.9, "smallest radius over the mean",
+               p.smallest_radius, "0.01 to 0.9 is expected");
+  const bool equal = p.cov == 0;
+  core::expect(p.density > 0 && p.density < (equal ? densest : 1.0), "density", p.density,
+               equal ? "a number above 0 and below pi/sqrt(18) = 0.7405, the densest packing of equal "
+                       "spheres, is expected"
+                     : "a number above 0 and below 1 is expected");
+  core::expect(p.growth_rate >= 1e-6 && p.growth_rate <= 1, "growth rate", p.growth_rate,
+               "1e-6 to 1 thermal speed is expected");
+  core::expect(p.fluid_growth_rate >= 1e-6 && p.fluid_growth_rate <= 1, "growth rate of the fluid",
+               p.fluid_growth_rate, "1e-6 to 1 thermal speed is expected");
+  core::expect(p.pressure_limit >= 100 && p.pressure_limit <= 1e12, "pressure limit", p.pressure_limit,
+               "a reduced pressure of 100 to 1e12 is expected");
+  core::expect_positive(p.side, "side of the cube", "m");
+  core::expect(p.boundary == Boundary::periodic || p.boundary == Boundary::walls, "boundary",
+               static_cast<int>(p.boundary), "periodic or walls is expected");
+
+  // Mean diameter at the wanted density; the cut only raises the mean of the cube, so this is an upper bound.
+  const double diameter = std::cbrt(6 * p.density / (std::numbers::pi * p.particles)) * upper_cut();
+  const double limit = periodic() ? 0.45 : 1;
+  core::expect(diameter <= limit, "number of particles", p.particles,
+               "more are expected: the largest sphere would be " + core::to_text(diameter) +
+                   " of the side, and at most " + core::to_text(limit) + " fits");
+}
+
+/// Draws radii, places and velocities.
+inline detail::GrowingSpheres LubachevskyStillinger::start_loose(core::Random& random) const {
+  std::vector<double> sizes =
+      detail::truncated_normal(parameters_.particles, parameters_.cov, lower_cut(), upper_cut(), random);
+  double mean = 0;
+  for (const double size : sizes)
+    mean += size / static_cast<double>(sizes.size());
+  for (double& size : sizes)
+    size /= 2 * mean;
+
+  const double volume = detail::volume_of_spheres(sizes);
+  std::vector<Vec3> centres;
+  double scale = 0;
+  for (double density = std::min(start_density, parameters_.density / 2); centres.empty(); density /= 2) {
+    scale = std::cbrt(density / volume);
+    std::vector<double> radii = sizes;
+    for (double& radius : radii)
+      radius *= scale;
+    centres = detail::add_sequentially(radii, periodic(), random);
+  }
+
+  std::vector<Vec3> velocities(sizes.size());
+  Vec3 drift = Vec3::Zero();
+  for (Vec3& velocity : velocities) {
+    for (int k = 0; k < 3; ++k)
+      velocity[k] = random.normal();
+    drift += velocity / static_cast<double>(sizes.size());
+  }
+  if (periodic())
+    for (Vec3& velocity : velocities)
+      velocity -= drift;
+  return {centres, sizes, velocities, scale, periodic(), std::cbrt(parameters_.density / volume)};
+}
+
+inline void LubachevskyStillinger::grow(detail::GrowingSpheres& spheres, Report& report,
+                                        const core::Monitor& monitor) const {
+  const auto count = static_cast<double>(spheres.size());
+  double size_volume = 0; // volume of the spheres at scale 1
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    size_volume += std::pow(spheres.radius(i) / spheres.scale(), 3);
+  size_volume *= 4.0 / 3.0 * std::numbers::pi;
+  const double final_scale = std::cbrt(parameters_.density / size_volume);
+  const auto density = [&] { return size_volume * std::pow(spheres.scale(), 3); };
+  const double first_density = density();
+  const double widest_skin =
+      periodic() ? (0.5 - final_scale * upper_cut()) / 2 : detail::EventCalendar::never;
+
+  constexpr std::uint64_t slice = 16384;
+  constexpr double stall_ratio = 1e-3;
+  constexpr int most_stalls = 20;
+  auto reported = Clock::now();
+  detail::CollisionSums last;
+  double interval = 0.02 * spheres.scale() / count;
+  double usual_duration = 0;
+  double pressure = 1;
+  int stalls = 0;
+
+  for (bool reached = false; !reached;) {
+    const double growth = density() < fluid_density
+                              ? std::max(parameters_.fluid_growth_rate, parameters_.growth_rate)
+                              : parameters_.growth_rate;
+    const double skin = std::min(spheres.scale() * std::clamp(2 / pressure, 0.03, 0.2), widest_skin);
+    const double per_particle = std::clamp(0.2 / growth, 1.0, 10.0);
+    const auto events = static_cast<std::uint64_t>(std::max(per_particle * count, 1000.0));
+    spheres.begin_cycle(growth, skin, interval);
+    for (std::uint64_t done = 0; done < events && !reached; done += slice) {
+      reached = spheres.run(std::min(slice, events - done), final_scale);
+      if (const auto now = Clock::now(); now - reported > std::chrono::milliseconds(250)) {
+        reported = now;
+        monitor.report(
+            {"packing",
+             std::clamp((density() - first_density) / (parameters_.density - first_density), 0.0, 1.0),
+             "density " + core::to_text(density()) + ", pressure " + core::to_text(pressure)});
+      } else if (monitor.stop_requested())
+        monitor.report({"packing", 0, "density " + core::to_text(density())});
+    }
+    const detail::CollisionSums sums = spheres.sums();
+    report.events += sums.events;
+    report.collisions += sums.collisions;
+    spheres.synchronise();
+    if (reached) {
+      report.reason = StopReason::density_reached;
+      report.pressure = (sums.collisions < spheres.size() ? last + sums : sums).reduced_pressure();
+      return;
+    }
+    if (sums.duration < stall_ratio * usual_duration) {
+      if (++stalls > most_stalls) {
+        report.reason = StopReason::stalled;
+        report.pressure = last.reduced_pressure();
+        return;
+      }
+      spheres.shrink(1e-13);
+      continue;
+    }
+    last = sums;
+    stalls = 0;
+    usual_duration = sums.duration;
+    interval = sums.duration / static_cast<double>(sums.events);
+    pressure = sums.reduced_pressure();
+    if (pressure > parameters_.pressure_limit) {
+      report.reason = StopReason::pressure_limit;
+      report.pressure = pressure;
+      return;
+    }
+  }
+}
+
+inline Packing<LubachevskyStillinger::Report>
+LubachevskyStillinger::result(const detail::GrowingSpheres& spheres) const {
+  Packing<Report> packing;
+  packing.box = geometry::Box::cube(parameters_.side, periodic());
+  packing.particles.resize(spheres.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    packing.particles.position[i] = packing.box.wrap(spheres.centre(i) * parameters_.side);
+    packing.particles.radius[i] = spheres.radius(i) * parameters_.side;
+  }
+  return packing;
+}
+
+inline void LubachevskyStillinger::complete(Packing<Report>& packing, Clock::time_point start) const {
+  Report& report = packing.report;
+  const particles::ParticleSet& spheres = packing.particles;
+  const auto count = static_cast<double>(spheres.size());
+  report.density = spheres.solid_volume() / packing.box.volume();
+  report.contact_tolerance = std::min(30 / report.pressure, 0.01);
+  const detail::ContactSurvey survey =
+      detail::survey_contacts(spheres, packing.box, report.contact_tolerance);
+  report.largest_overlap = survey.largest_overlap;
+  report.rattlers = survey.rattlers;
+  report.contact_number = survey.contact_number;
+  report.mean_radius = spheres.mean_radius();
+  double variance = 0;
+  for (const double radius : spheres.radius)
+    variance += std::pow(radius / report.mean_radius - 1, 2) / count;
+  report.cov = std::sqrt(variance);
+  report.collisions_per_particle = static_cast<double>(report.collisions) / count;
+  report.wall_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  report.events_per_second = static_cast<double>(report.events) / report.wall_seconds;
+}
+
+static_assert(PackingGenerator<LubachevskyStillinger>);
+
+} // namespace cdem::packing
