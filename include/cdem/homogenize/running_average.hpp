@@ -52,13 +52,16 @@ public:
 
   ConvergenceRule() : ConvergenceRule(Parameters{}) {}
   /// @throws core::InvalidInput for an interval or a number of checks below 1, or a tolerance not above 0
-  explicit ConvergenceRule(Parameters parameters, State state = {}) : parameters_(parameters), state_(state) {
+  explicit ConvergenceRule(Parameters parameters) : parameters_(parameters) {
     core::expect(parameters_.interval > 0, "interval of the convergence checks", parameters_.interval,
                  "at least 1 step is expected");
     core::expect_positive(parameters_.tolerance, "tolerance of the convergence checks");
     core::expect(parameters_.successive > 0, "number of successive convergence checks",
                  parameters_.successive, "at least 1 is expected");
   }
+
+  /// Goes on from what an earlier rule remembered.
+  void restore(const State& state) { state_ = state; }
 
   /// Looks at the average after `step` steps; true once converged. Anything but a multiple of the interval passes by.
   bool check(std::uint64_t step, double average) {
