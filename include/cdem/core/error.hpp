@@ -64,14 +64,14 @@ void expect(bool condition, std::string_view name, const Value& value, std::stri
 inline void expect_positive(double value, std::string_view name, std::string_view unit = "") {
   if (!(std::isfinite(value) && value > 0)) [[unlikely]]
     reject(name, value,
-           "a finite number above 0" + (unit.empty() ? std::string() : " " + std::string(unit)) + " is expected");
+           std::string("a finite number above 0") + (unit.empty() ? "" : " ") + std::string(unit) + " is expected");
 }
 
 /// Throws InvalidInput unless `value` is a finite number, zero or above.
 inline void expect_not_negative(double value, std::string_view name, std::string_view unit = "") {
   if (!(std::isfinite(value) && value >= 0)) [[unlikely]]
     reject(name, value,
-           "a finite number, 0 or above" + (unit.empty() ? std::string() : ", in " + std::string(unit)) +
+           std::string("a finite number, 0 or above") + (unit.empty() ? "" : ", in ") + std::string(unit) +
                " is expected");
 }
 
