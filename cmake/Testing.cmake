@@ -4,6 +4,21 @@
 set(CDEM_TEST_TIMEOUT 120 CACHE STRING "Seconds after which a test has failed")
 find_package(Python3 3.9 REQUIRED COMPONENTS Interpreter) # the checks' own scripts: standard library alone
 
+# A Python with VTK and NumPy, for the tests that read files back. The system's comes first: that is where a
+# distribution puts python3-vtk9.
+if(NOT CDEM_VTK_PYTHON)
+  foreach(candidate IN ITEMS /usr/bin/python3 ${Python3_EXECUTABLE})
+    execute_process(COMMAND ${candidate} -c "import numpy, vtkmodules" RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
+    if(status EQUAL 0)
+      set(CDEM_VTK_PYTHON ${candidate} CACHE FILEPATH "Python that has VTK and NumPy" FORCE)
+      break()
+    endif()
+  endforeach()
+  if(NOT CDEM_VTK_PYTHON)
+    message(WARNING "No python3 with vtkmodules and numpy (Debian and Ubuntu: python3-vtk9): tests that need it are skipped")
+  endif()
+endif()
+
 # Labels the test by its first folder and gives it its time.
 function(cdem_describe_test name)
   string(REGEX REPLACE "/.*" "" label ${name})

@@ -1,0 +1,5 @@
+#include <cdem/cdem.hpp>
+
+#include "units.hpp"
+
+Addresses addresses_in_second() { return addresses(); }
