@@ -7,6 +7,8 @@
 #include <cdem/network/bond_network.hpp>
 #include <cdem/particles/particle_set.hpp>
 
+#include <Eigen/Geometry> // cross product
+
 #include <concepts>
 
 namespace cdem::bond {
