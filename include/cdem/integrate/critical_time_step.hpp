@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace cdem::integrate {
 
@@ -27,16 +28,19 @@ struct CriticalTimeStep {
 /// Guaranteed, because the energy of a bond is not negative, so that its coupling of two ends is at most the
 /// mean of what it does to each alone: x.K x <= 2 sum over particles of x_i.K_ii x_i, hence omega_max^2 <= 2
 /// max lambda_i. omega_i = sqrt(lambda_i) is the frequency of particle i among neighbours that are held.
-/// Equality holds for a chain of alternating motion; in random packings the bound is 10 to 30 % below the
+/// Equality holds for alternating motion of a ring of equal springs; in random packings the bound is 10 to 30 % below the
 /// limit 2 / largest_frequency().
 /// @deviation [L17] section 2.3 takes the minimum over bonds of a dt_crit it does not define; this one is
 /// over particles.
 /// @return      time_step is infinite where nothing is bonded
+/// @throws      core::InvalidInput for inertia that does not fit the body or is not positive; core::NotReached
+///              if a block is not finite
 /// @complexity  O(bonds); the eigenvalue problem is solved for the few particles whose row sums exceed the
 /// maximum so far
 template <InternalForces Forces>
 CriticalTimeStep critical_time_step(const Forces& forces, const particles::Inertia& inertia) {
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  inertia.validate(forces.particle_count());
   double largest = 0;
   ParticleIndex where = 0;
   for (std::size_t i = 0; i < forces.particle_count(); ++i) {
@@ -45,6 +49,9 @@ CriticalTimeStep critical_time_step(const Forces& forces, const particles::Inert
     scale.tail<3>().setConstant(1 / std::sqrt(inertia.moment[i]));
     const Matrix6 block = scale.asDiagonal() * Matrix6(forces.diagonal_block(static_cast<ParticleIndex>(i))) *
                           scale.asDiagonal();
+    if (!block.allFinite())
+      throw core::NotReached("the critical time step cannot be found: the stiffness of particle " +
+                             std::to_string(i) + " over its mass is not finite");
     if (block.cwiseAbs().rowwise().sum().maxCoeff() <= largest) // a row sum bounds the eigenvalues
       continue;
     const double eigenvalue =
@@ -65,12 +72,15 @@ CriticalTimeStep critical_time_step(const Forces& forces, const particles::Inert
 /// Approaches it from below; the stability limit of undamped velocity Verlet is 2 over it.
 /// @param tolerance   relative change of the eigenvalue in one iteration at which to stop
 /// @return            rad/s
-/// @throws            core::NotReached if `iterations` do not suffice
+/// @throws            core::InvalidInput for a bad problem, a tolerance that is not positive or no iteration;
+///                    core::NotReached if `iterations` do not suffice or the forces are not finite
 /// @complexity        one application of the forces an iteration; hundreds of iterations
 template <InternalForces Forces>
 double largest_frequency(const Problem<Forces>& problem, core::ThreadPool& pool, double tolerance = 1e-9,
                          int iterations = 20000) {
   problem.validate();
+  core::expect_positive(tolerance, "tolerance of the power iteration");
+  core::expect(iterations > 0, "iterations of the power iteration", iterations, "1 or more is expected");
   const std::size_t count = problem.forces.particle_count();
   particles::SpatialField<> vector(count), force(count);
   core::Random random(1);
@@ -82,16 +92,18 @@ double largest_frequency(const Problem<Forces>& problem, core::ThreadPool& pool,
   };
   // vector holds x = M^1/2 u with |x| = 1; one iteration is x <- M^-1/2 K M^-1/2 x, its length the eigenvalue
   double previous = 0;
-  for (int iteration = 0; iteration < iterations; ++iteration) {
+  for (int iteration = 0; iteration <= iterations; ++iteration) {
     for (const auto& constraint : problem.constraints.list())
       vector[constraint.particle][constraint.dof] = 0;
     double norm = 0;
     for (const auto& entry : vector)
       norm += entry.linear().squaredNorm() + entry.angular().squaredNorm();
     norm = std::sqrt(norm);
-    if (iteration > 0 && std::abs(norm - previous) <= tolerance * norm)
+    if (!std::isfinite(norm))
+      throw core::NotReached("the power iteration for the largest frequency met forces that are not finite");
+    if (iteration > 1 && std::abs(norm - previous) <= tolerance * norm)
       return std::sqrt(norm);
-    if (!(norm > 0))
+    if (norm == 0) // nothing is bonded, or nothing is free
       return 0;
     previous = norm;
     for (std::size_t i = 0; i < count; ++i)

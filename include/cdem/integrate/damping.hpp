@@ -33,17 +33,25 @@ struct Damping {
     return {2 * ratio * lower_omega * upper_omega / sum, 2 * ratio / sum};
   }
 
-  /// Damping ratio of a mode of angular frequency `omega`.
-  double ratio_at(double omega) const { return 0.5 * (alpha / omega + beta * omega); }
+  /// Damping ratio of a mode of angular frequency `omega`, rad/s, above 0.
+  double ratio_at(double omega) const {
+    core::expect_positive(omega, "angular frequency of the damping ratio", "rad/s");
+    return 0.5 * (alpha / omega + beta * omega);
+  }
 
-  /// Factor on the undamped stable step, for stiffness damping taken at the half step.
+  /// Factor on the undamped stable step, for stiffness damping at the extrapolated velocity (VelocityVerlet).
   ///
-  ///     sqrt(1 + xi^2) - xi,   xi = beta omega_max / 2
+  ///     sqrt(1 + 4 xi^2) - 2 xi,   xi = beta omega_max / 2
   ///
-  /// Mass damping is taken in the middle of the step and leaves the limit as it is.
+  /// With h = omega dt the characteristic polynomial z^3 + (h^2 + 3 xi h - 2) z^2 + (1 - 4 xi h) z + xi h has
+  /// all its roots inside the unit circle (Jury's test) just when h^2 + 8 xi h < 4. Mass damping is solved for
+  /// in closed form and leaves the limit, a root at z = -1, where it is.
+  /// @param largest_omega  the body's largest angular frequency, or a bound above it: the product of the
+  ///                       undamped step and the factor falls with it, so that the step stays a safe one
   double step_factor(double largest_omega) const {
-    const double xi = 0.5 * beta * largest_omega;
-    return std::sqrt(1 + xi * xi) - xi;
+    core::expect_not_negative(largest_omega, "largest angular frequency", "rad/s");
+    const double twice_ratio = beta * largest_omega;
+    return 1 / (std::sqrt(1 + twice_ratio * twice_ratio) + twice_ratio);
   }
 
   /// @throws core::InvalidInput if alpha or beta is negative or not finite

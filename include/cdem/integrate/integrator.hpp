@@ -9,9 +9,12 @@
 #include <cdem/particles/inertia.hpp>
 #include <cdem/particles/motion.hpp>
 
+#include <cmath>
 #include <concepts>
+#include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace cdem::integrate {
@@ -47,6 +50,21 @@ template <class F>
 concept InternalForces =
     KnowsParticleCount<F> && EvaluatesForces<F> && GivesElasticEnergy<F> && GivesDiagonalBlock<F>;
 
+/// @throws core::InvalidInput unless `field` (called `name` in the message) has `count` entries, all finite
+/// @complexity O(count)
+inline void expect_finite_field(const particles::SpatialField<>& field, std::size_t count,
+                                std::string_view name) {
+  if (field.size() != count) [[unlikely]]
+    core::reject("number of entries of the " + std::string(name), field.size(),
+                 "the number of particles, " + std::to_string(count) + ", is expected");
+  for (std::size_t i = 0; i < count; ++i)
+    for (int dof = 0; dof < 6; ++dof)
+      if (!std::isfinite(field[i][dof])) [[unlikely]]
+        core::reject(std::string(name) + " of particle " + std::to_string(i) + ", degree of freedom " +
+                         std::to_string(dof),
+                     field[i][dof], "a finite number is expected");
+}
+
 /// What is to be moved: internal forces, inertia, prescribed degrees of freedom and external loads.
 ///
 /// It refers to its parts; they must outlive it.
@@ -57,29 +75,24 @@ struct Problem {
   const particles::Constraints& constraints;
   const particles::SpatialField<>* load = nullptr; ///< [particles] N, N m; none when null
 
-  /// @throws core::InvalidInput if the parts are of different sizes, a mass, moment or load is not finite, a
-  /// mass or
-  ///         moment is not positive, or a constraint names a particle that does not exist
+  /// @throws core::InvalidInput if the parts are of different sizes, a load is not finite, a mass or moment is
+  ///         not a finite number above zero, or a constraint names a particle that does not exist
   void validate() const {
     const std::size_t count = forces.particle_count();
-    const std::string expected = "the number of particles, " + std::to_string(count) + ", is expected";
     core::expect(count > 0, "number of particles", count, "at least 1 is expected");
-    core::expect(inertia.mass.size() == count && inertia.moment.size() == count, "number of masses",
-                 inertia.mass.size(), expected);
-    core::expect(!load || load->size() == count, "number of loads", load ? load->size() : 0, expected);
-    for (std::size_t i = 0; i < count; ++i) {
-      core::expect_positive(inertia.mass[i], "mass of particle " + std::to_string(i), "kg");
-      core::expect_positive(inertia.moment[i], "moment of inertia of particle " + std::to_string(i),
-                            "kg m^2");
-      if (load)
-        for (int dof = 0; dof < 6; ++dof)
-          core::expect_finite((*load)[i][dof], "load on particle " + std::to_string(i));
-    }
+    inertia.validate(count);
+    if (load)
+      expect_finite_field(*load, count, "load");
     for (const auto& constraint : constraints.list())
-      core::expect(constraint.particle < count, "constrained particle", constraint.particle,
-                   "a number below " + std::to_string(count) + " is expected");
+      if (constraint.particle >= count) [[unlikely]]
+        core::reject("constrained particle", constraint.particle,
+                     "a number below " + std::to_string(count) + " is expected");
   }
 };
+
+template <class Forces>
+Problem(const Forces&, const particles::Inertia&, const particles::Constraints&,
+        const particles::SpatialField<>* = nullptr) -> Problem<Forces>;
 
 /// Energies of a body, J. What came in equals what is there: initial + work = kinetic + elastic + dissipated.
 struct EnergyLedger {

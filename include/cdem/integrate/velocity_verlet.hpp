@@ -23,13 +23,15 @@ struct NoObserver {
 /// Velocity Verlet for translations and rotations with Rayleigh damping, [L17] section 2.2.
 ///
 ///     v(n+1/2) = v(n) + dt/2 a(n),    u(n+1) = u(n) + dt v(n+1/2)
-///     a(n+1)   = M^-1 (f(u) + load - beta K v(n+1/2)) - alpha v(n+1),    v(n+1) = v(n+1/2) + dt/2 a(n+1)
+///     a(n+1)   = M^-1 (f(u) + load - beta K v*) - alpha v(n+1),          v(n+1) = v(n+1/2) + dt/2 a(n+1)
+///     v*       = v(n+1/2) + dt/2 a(n)
 ///
-/// Second order and symplectic without damping; alpha is taken at the full step (solved in closed form), beta
-/// at the half step, where it shortens the stable step by Damping::step_factor(). A prescribed degree of
-/// freedom moves as u = rate t from the first step on: its velocity is imposed at once, and the kinetic
-/// energy so given is booked as external work. Undamped on a linear body it conserves E_kin + E_el - dt^2/8
-/// F.M^-1 F to rounding.
+/// Second order, with damping too, and symplectic without it: alpha is taken at v(n+1), solved for in closed
+/// form; beta at its extrapolation v*, which keeps the step explicit (v(n+1/2) in its place would be of first
+/// order) and shortens the stable step by Damping::step_factor(). A prescribed degree of freedom moves as
+/// u = rate t from the first step on: position and velocity are imposed at once, and the kinetic energy so
+/// given is booked as external work. Undamped on a linear body it conserves E_kin + E_el - dt^2/8 F.M^-1 F
+/// over the free degrees of freedom, to rounding.
 class VelocityVerlet {
 public:
   struct Parameters {
@@ -56,7 +58,8 @@ public:
   /// whole step,
   ///                  except after a blow-up, which leaves nothing of use
   /// @param observer  bool(const Step&), called after every step; false ends the run
-  /// @throws          core::InvalidInput for a motion that does not fit or is not finite; core::Interrupted;
+  /// @throws          core::InvalidInput for a motion that does not fit, is not finite, or goes on under other
+  ///                  constraints than it began with; core::Interrupted;
   ///                  core::NotReached when the run blows up, with the step and the likely cause
   /// @complexity      O(bonds) a step; two fields of the body's size (three with beta), allocated once
   template <InternalForces Forces, class Observer = NoObserver>
@@ -102,7 +105,7 @@ private:
       }
     }
     Field force;                  ///< internal forces at the displacement
-    Field ahead;                  ///< displacement + beta velocity
+    Field ahead;                  ///< displacement + beta v*
     Field damped;                 ///< internal forces there
     std::vector<double> reaction; ///< [constraints]
   };
@@ -123,21 +126,30 @@ private:
   template <class P>
   static void validate(const P& problem, const particles::Motion& motion) {
     const std::size_t count = problem.forces.particle_count();
-    core::expect(motion.displacement.size() == count && motion.velocity.size() == count &&
-                     (motion.acceleration.empty() || motion.acceleration.size() == count),
-                 "number of particles of the motion", motion.displacement.size(),
-                 "the number of particles, " + std::to_string(count) + ", is expected");
-    for (std::size_t i = 0; i < count; ++i)
-      for (int dof = 0; dof < 6; ++dof) {
-        core::expect_finite(motion.displacement[i][dof], "displacement of particle " + std::to_string(i));
-        core::expect_finite(motion.velocity[i][dof], "velocity of particle " + std::to_string(i));
-      }
+    expect_finite_field(motion.displacement, count, "displacement");
+    expect_finite_field(motion.velocity, count, "velocity");
+    if (motion.acceleration.empty())
+      return;
+    expect_finite_field(motion.acceleration, count, "acceleration");
+    for (const auto& [particle, dof, rate] : problem.constraints.list()) {
+      const bool kept =
+          motion.velocity[particle][dof] == rate && motion.displacement[particle][dof] == rate * motion.time;
+      if (!kept) [[unlikely]]
+        core::reject("rate of the constraint on particle " + std::to_string(particle) +
+                         ", degree of freedom " + std::to_string(dof),
+                     rate,
+                     "a motion goes on under the constraints it began with: it is at " +
+                         core::to_text(motion.displacement[particle][dof]) + " and moves at " +
+                         core::to_text(motion.velocity[particle][dof]));
+    }
   }
 
-  /// Imposes the prescribed velocities and computes the first acceleration.
+  /// Imposes the prescribed positions and velocities and computes the first acceleration.
   template <class P>
   void begin(const P& problem, particles::Motion& motion, Workspace& work, core::ThreadPool& pool) const {
     motion.acceleration.resize(motion.size());
+    for (const auto& constraint : problem.constraints.list())
+      motion.displacement[constraint.particle][constraint.dof] = constraint.rate * motion.time;
     motion.energy = {};
     motion.energy.initial = kinetic_energy(problem.inertia, motion.velocity, pool) +
                             problem.forces.elastic_energy(motion.displacement, pool);
@@ -146,7 +158,6 @@ private:
       motion.energy.external_work += 0.5 * mass_of(problem.inertia, constraint) *
                                      (constraint.rate * constraint.rate - velocity * velocity);
       velocity = constraint.rate;
-      motion.displacement[constraint.particle][constraint.dof] = constraint.rate * motion.time;
     }
     accelerate(problem, motion, work, pool, 0);
   }
@@ -154,9 +165,6 @@ private:
   template <class P>
   void step(const P& problem, particles::Motion& motion, Workspace& work, core::ThreadPool& pool) const {
     const double dt = parameters_.time_step;
-    const double earlier_power = motion.energy.external_power + motion.energy.dissipated_power;
-    if (!std::isfinite(earlier_power))
-      blow_up(problem, motion, earlier_power);
     motion.time += dt;
     ++motion.step;
     core::parallel_for(pool, motion.size(), [&](std::size_t begin, std::size_t end) {
@@ -176,12 +184,12 @@ private:
     motion.energy.dissipated += 0.5 * dt * (before.dissipated_power + motion.energy.dissipated_power);
     const double given = std::abs(motion.energy.initial) + std::abs(motion.energy.external_work) +
                          std::abs(before.external_work);
-    if (!(kinetic <= runaway_factor * given))
+    if (!(std::isfinite(given) && kinetic <= runaway_factor * given))
       blow_up(problem, motion, kinetic);
   }
 
-  /// Acceleration at the displacement; completes the velocity by `advance` seconds of it. Returns the kinetic
-  /// energy.
+  /// Acceleration at the displacement; completes the velocity, which lacks `advance` seconds of it. Returns
+  /// the kinetic energy.
   template <class P>
   double accelerate(const P& problem, particles::Motion& motion, Workspace& work, core::ThreadPool& pool,
                     double advance) const {
@@ -192,7 +200,8 @@ private:
         for (std::size_t i = begin; i < end; ++i)
           for (int c = 0; c < 8; ++c)
             work.ahead[i].component[c] =
-                motion.displacement[i].component[c] + beta * motion.velocity[i].component[c];
+                motion.displacement[i].component[c] +
+                beta * (motion.velocity[i].component[c] + advance * motion.acceleration[i].component[c]);
       });
       problem.forces.evaluate(work.ahead, work.damped, pool);
     }
@@ -263,8 +272,9 @@ private:
               " s: look at the load or at a bond law whose stiffness grows";
     throw core::NotReached("velocity Verlet blew up at step " + std::to_string(motion.step) +
                            " (t = " + core::to_text(motion.time) + " s): the kinetic energy is " +
-                           core::to_text(kinetic) + " J, the work done on the body " +
-                           core::to_text(motion.energy.external_work) + " J. Likely cause: " + cause);
+                           core::to_text(kinetic) + " J, the energy given to the body " +
+                           core::to_text(motion.energy.initial + motion.energy.external_work) +
+                           " J. Likely cause: " + cause);
   }
 
   /// A stable run's kinetic energy stays below the energy given to it, but for the overshoot near the limit.

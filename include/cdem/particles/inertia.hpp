@@ -5,8 +5,11 @@
 
 #include <cdem/particles/particle_set.hpp>
 
+#include <cmath>
 #include <numbers>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace cdem::particles {
 
@@ -16,6 +19,24 @@ struct Inertia {
   std::vector<double> moment; ///< [particles] kg m^2, the same about every axis
 
   std::size_t size() const noexcept { return mass.size(); }
+
+  /// @throws core::InvalidInput unless there is a mass and a moment, each a finite number above zero, for
+  ///         each of `particles`; names the first that is not
+  void validate(std::size_t particles) const {
+    const auto expect_count = [&](std::size_t count, const char* name) {
+      core::expect(count == particles, name, count,
+                   "the number of particles, " + std::to_string(particles) + ", is expected");
+    };
+    expect_count(mass.size(), "number of masses");
+    expect_count(moment.size(), "number of moments of inertia");
+    const auto acceptable = [](double value) { return std::isfinite(value) && value > 0; };
+    for (std::size_t i = 0; i < particles; ++i) { // names are written for the bad one only
+      if (!acceptable(mass[i])) [[unlikely]]
+        core::expect_positive(mass[i], "mass of particle " + std::to_string(i), "kg");
+      if (!acceptable(moment[i])) [[unlikely]]
+        core::expect_positive(moment[i], "moment of inertia of particle " + std::to_string(i), "kg m^2");
+    }
+  }
 
   /// Multiplies every mass and moment: density scaling. A time step grows with the square root of the factor,
   /// the static solution does not change.
