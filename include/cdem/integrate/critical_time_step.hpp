@@ -21,6 +21,30 @@ struct CriticalTimeStep {
   ParticleIndex particle = 0;   ///< the one whose block gives it
 };
 
+namespace detail {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// M_i^-1/2 K_ii M_i^-1/2 of one particle.
+/// @throws core::NotReached if it is not finite
+template <InternalForces Forces>
+Matrix6 scaled_block(const Forces& forces, const particles::Inertia& inertia, ParticleIndex i) {
+  Eigen::Matrix<double, 6, 1> scale;
+  scale.head<3>().setConstant(1 / std::sqrt(inertia.mass[i]));
+  scale.tail<3>().setConstant(1 / std::sqrt(inertia.moment[i]));
+  const Matrix6 block = scale.asDiagonal() * Matrix6(forces.diagonal_block(i)) * scale.asDiagonal();
+  if (!block.allFinite())
+    throw core::NotReached("the critical time step cannot be found: the stiffness of particle " +
+                           std::to_string(i) + " over its mass is not finite");
+  return block;
+}
+
+inline double largest_eigenvalue(const Matrix6& symmetric) {
+  return Eigen::SelfAdjointEigenSolver<Matrix6>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[5];
+}
+
+} // namespace detail
+
 /// A guaranteed lower bound of the stable time step, from one 6x6 block a particle.
 ///
 ///     dt_crit = min over particles of 2 / sqrt(2 lambda_i),   lambda_i: largest eigenvalue of M_i^-1 K_ii
@@ -39,23 +63,14 @@ struct CriticalTimeStep {
 /// maximum so far
 template <InternalForces Forces>
 CriticalTimeStep critical_time_step(const Forces& forces, const particles::Inertia& inertia) {
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
   inertia.validate(forces.particle_count());
   double largest = 0;
   ParticleIndex where = 0;
   for (std::size_t i = 0; i < forces.particle_count(); ++i) {
-    Eigen::Matrix<double, 6, 1> scale;
-    scale.head<3>().setConstant(1 / std::sqrt(inertia.mass[i]));
-    scale.tail<3>().setConstant(1 / std::sqrt(inertia.moment[i]));
-    const Matrix6 block = scale.asDiagonal() * Matrix6(forces.diagonal_block(static_cast<ParticleIndex>(i))) *
-                          scale.asDiagonal();
-    if (!block.allFinite())
-      throw core::NotReached("the critical time step cannot be found: the stiffness of particle " +
-                             std::to_string(i) + " over its mass is not finite");
+    const detail::Matrix6 block = detail::scaled_block(forces, inertia, static_cast<ParticleIndex>(i));
     if (block.cwiseAbs().rowwise().sum().maxCoeff() <= largest) // a row sum bounds the eigenvalues
       continue;
-    const double eigenvalue =
-        Eigen::SelfAdjointEigenSolver<Matrix6>(block, Eigen::EigenvaluesOnly).eigenvalues()[5];
+    const double eigenvalue = detail::largest_eigenvalue(block);
     if (eigenvalue > largest) {
       largest = eigenvalue;
       where = static_cast<ParticleIndex>(i);
