@@ -217,7 +217,7 @@ inline detail::GrowingSpheres LubachevskyStillinger::start_loose(core::Random& r
   if (periodic())
     for (Vec3& velocity : velocities)
       velocity -= drift;
-  return {centres, sizes, velocities, scale, periodic(), std::cbrt(parameters_.density / volume)};
+  return {centres, sizes, velocities, scale, periodic(), 1.4 * std::cbrt(parameters_.density / volume)};
 }
 
 inline void LubachevskyStillinger::grow(detail::GrowingSpheres& spheres, Report& report,

@@ -16,15 +16,16 @@ namespace cdem::packing::detail {
 /// No sphere: the end of a list.
 inline constexpr ParticleIndex no_sphere = 0xffffffffU;
 
-/// Vector between two points of the unit cube brought to the nearest periodic image; both points may lie outside
-/// the cube by less than a quarter of its edge. Comparisons, because they are predicted and std::round is a call.
+/// Whole number nearest to x, |x| < 2^51: adding 3 * 2^51 leaves no bits for the fraction. std::round would be a call.
+inline double nearest_integer(double x) {
+  constexpr double shift = 0x1.8p52;
+  return (x + shift) - shift;
+}
+
+/// Vector between two points of the unit cube brought to the nearest periodic image.
 inline void to_nearest_image(Vec3& d) {
-  for (int k = 0; k < 3; ++k) {
-    if (d[k] > 0.5)
-      d[k] -= 1;
-    else if (d[k] < -0.5)
-      d[k] += 1;
-  }
+  for (int k = 0; k < 3; ++k)
+    d[k] -= nearest_integer(d[k]);
 }
 
 /// Cells of the unit cube, each a doubly linked list of spheres: a sphere comes and goes in constant time.

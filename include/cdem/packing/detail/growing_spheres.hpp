@@ -16,29 +16,32 @@
 
 namespace cdem::packing::detail {
 
-/// Time until two growing spheres touch; infinity if they never do.
-///
-/// Smallest t >= 0 at which |d + w t| = S + G t and the surfaces approach: with a = w.w - G^2, b = d.w - S G and
-/// c = d.d - S^2 the root of a t^2 + 2 b t + c, written without cancellation. Spheres that touch or overlap by
-/// rounding (c <= 0) collide at once if they approach (b < 0), and are let go if they part.
-/// @param d  from one centre to the other      @param w  rate of d
-/// @param S  sum of the radii                  @param G  rate of S, not negative
-inline double time_to_contact(const Vec3& d, const Vec3& w, double S, double G) {
-  constexpr double never = EventCalendar::never;
-  const double b = d.dot(w) - S * G;
-  const double a = w.squaredNorm() - G * G;
-  if (b >= 0 && a >= 0) [[likely]]
-    return never;
-  const double c = d.squaredNorm() - S * S;
-  const double discriminant = b * b - a * c;
-  if (b < 0) {
-    if (c <= 0)
-      return 0;
-    return discriminant >= 0 ? c / (std::sqrt(discriminant) - b) : never;
+/// How two growing spheres near each other: after the time t their centres' distance squared less the sum of their
+/// radii squared is a t^2 + 2 b t + c.
+struct Approach {
+  double a, b, c;
+
+  /// @param d  from one centre to the other      @param w  rate of d
+  /// @param S  sum of the radii                  @param G  rate of S, not negative
+  Approach(const Vec3& d, const Vec3& w, double S, double G)
+      : a(w.squaredNorm() - G * G), b(d.dot(w) - S * G), c(d.squaredNorm() - S * S) {}
+
+  /// Time until they touch, the smallest root t >= 0 at which the surfaces approach, written without cancellation;
+  /// infinity if there is none.
+  ///
+  /// Spheres that touch or overlap by rounding (c <= 0) collide at once if they approach (b < 0), and are let go if
+  /// they part.
+  double time_to_contact() const {
+    const double discriminant = b * b - a * c;
+    const double root = std::sqrt(std::max(discriminant, 0.0));
+    if (b < 0) {
+      const double time = std::max(c, 0.0) / (root - b);
+      return discriminant >= 0 || c <= 0 ? time : EventCalendar::never;
+    }
+    // The surfaces part; they meet again only if growth outruns them.
+    return a < 0 ? (b + root) / -a : EventCalendar::never;
   }
-  // The surfaces part, but growth brings them together again (a < 0).
-  return discriminant >= 0 ? (b + std::sqrt(discriminant)) / -a : b / -a;
-}
+};
 
 /// Time until a growing sphere reaches its shell from inside; infinity if it never does.
 ///
@@ -207,7 +210,16 @@ private:
     body.time = now_;
   }
 
+  /// Asks for the memory that predict() is going to read, so that its delays overlap.
+  void fetch_neighbours(ParticleIndex i) const {
+    for (const ParticleIndex j : neighbours_.of(i))
+      __builtin_prefetch(&bodies_[j]);
+  }
+
   void handle(ParticleIndex i, ParticleIndex partner) {
+    fetch_neighbours(i);
+    if (is_sphere(partner))
+      fetch_neighbours(partner);
     calendar_.schedule(i, EventCalendar::never, second_look);
     if (is_sphere(partner)) {
       calendar_.schedule(partner, EventCalendar::never, second_look);
@@ -308,16 +320,26 @@ private:
     double best = calendar_.time(i);
     ParticleIndex partner = second_look;
 
-    for (const ParticleIndex j : neighbours_.of(i)) {
+    // In two passes without branches to guess: half of the neighbours part, but which half cannot be foreseen.
+    const std::span<const ParticleIndex> neighbours = neighbours_.of(i);
+    if (nearing_.size() < neighbours.size())
+      nearing_.resize(neighbours.size(), {{Vec3::Zero(), Vec3::Zero(), 0, 0}, no_sphere});
+    std::size_t count = 0;
+    for (const ParticleIndex j : neighbours) {
       const Body& b = bodies_[j];
       Vec3 d = b.centre + b.velocity * (now_ - b.time) - centre;
       if (periodic_)
         to_nearest_image(d);
       const double size = a.size + b.size;
-      const double time = now_ + time_to_contact(d, b.velocity - a.velocity, size * scale, size * growth_);
-      if (time < best && time < calendar_.time(j)) {
+      const Approach approach(d, b.velocity - a.velocity, size * scale, size * growth_);
+      nearing_[count] = {approach, j};
+      count += static_cast<std::size_t>((approach.b < 0) | (approach.a < 0));
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const double time = now_ + nearing_[k].approach.time_to_contact();
+      if (time < best && time < calendar_.time(nearing_[k].sphere)) {
         best = time;
-        partner = j;
+        partner = nearing_[k].sphere;
       }
     }
     if (!periodic_ && near_walls_[i])
@@ -374,11 +396,17 @@ private:
       calendar_.set_partner(former, second_look);
   }
 
+  struct Nearing {
+    Approach approach;
+    ParticleIndex sphere;
+  };
+
   std::vector<Body> bodies_;
   NearNeighbours neighbours_;
   EventCalendar calendar_;
   std::vector<std::uint8_t>
       near_walls_; ///< [spheres] bit 2 axis (+ 1: upper) of each wall inside the shell; walled only
+  std::vector<Nearing> nearing_; ///< scratch of predict()
   CollisionSums sums_;
   double now_ = 0;
   double scale_;                              ///< at time 0
