@@ -11,6 +11,8 @@
 #include <cdem/stress/tessellation/tessellation.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -146,7 +148,7 @@ private:
         const std::optional<std::size_t> cell = cells_.locate(particles.position[i]);
         if (!cell && parameters_.outside == Outside::refuse) [[unlikely]]
           core::reject(
-              "position of particle " + std::to_string(i), particles.position[i].transpose(),
+              "position of particle " + std::to_string(i), text_of(particles.position[i]),
               "a point inside the tessellation is expected (or the parameter outside = Outside::report)");
         cell_of[i] = cell ? static_cast<std::uint32_t>(*cell) : outside;
       }
@@ -196,13 +198,17 @@ private:
     return owners == 1 ? 0 : cell / 8 % owners;
   }
 
+  static std::string text_of(const Vec3& vector) {
+    return core::to_text(vector.x()) + " " + core::to_text(vector.y()) + " " + core::to_text(vector.z());
+  }
+
   static void expect_sound(const network::BondNetwork& network, std::span<const Vec3> forces,
                            std::size_t bond) {
     const auto name = [&](const char* what) {
       return what + std::string(" of bond ") + std::to_string(bond);
     };
     if (!forces[bond].allFinite()) [[unlikely]]
-      core::reject(name("force"), forces[bond].transpose(), "a finite vector, in N, is expected");
+      core::reject(name("force"), text_of(forces[bond]), "a finite vector, in N, is expected");
     if (network.first[bond] >= network.particle_count) [[unlikely]]
       core::reject(name("first particle"), network.first[bond],
                    "a number below " + std::to_string(network.particle_count) + " is expected");
@@ -211,7 +217,7 @@ private:
                    "a number below " + std::to_string(network.particle_count) + " is expected");
     const double square = network.branch[bond].squaredNorm();
     if (!(std::isfinite(square) && square > 0)) [[unlikely]]
-      core::reject(name("branch"), network.branch[bond].transpose(),
+      core::reject(name("branch"), text_of(network.branch[bond]),
                    "a finite vector of positive length, in m, is expected");
   }
 

@@ -80,7 +80,7 @@ private:
     for (std::size_t cell = 0; cell < field.size(); ++cell)
       if (!field.stress[cell].allFinite())
         core::reject("stress of specimen " + std::to_string(cell),
-                     field.stress[cell].format(Eigen::IOFormat(6, 0, " ", "; ")),
+                     field.stress[cell].format(Eigen::IOFormat(6, Eigen::DontAlignCols, " ", "; ")),
                      "a finite tensor is expected");
   }
 
