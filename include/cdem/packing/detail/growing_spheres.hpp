@@ -83,6 +83,31 @@ struct CollisionSums {
   }
 };
 
+/// Notices that time has come to a standstill: rounding near contact can make a few spheres collide again and again
+/// without time passing.
+///
+/// A cycle has a fixed number of events, and the time it takes shrinks slowly. One that takes less than a thousandth of
+/// the last sound cycle's time hesitates (the caller shrinks the radii by a rounding or two and tries again); after
+/// twenty in a row the system is stalled.
+class StallWatch {
+public:
+  enum class Verdict : std::uint8_t { advances, hesitates, stalled };
+
+  /// @param duration  time that passed in the cycle
+  Verdict judge(double duration) {
+    if (duration > 1e-3 * sound_duration_) {
+      sound_duration_ = duration;
+      hesitations_ = 0;
+      return Verdict::advances;
+    }
+    return ++hesitations_ < 20 ? Verdict::hesitates : Verdict::stalled;
+  }
+
+private:
+  double sound_duration_ = 0;
+  int hesitations_ = 0;
+};
+
 /// Hard spheres of equal mass in the unit cube, radius_i(t) = size_i * scale(t), scale growing linearly in time.
 ///
 /// Each sphere has a local time: an event moves only the spheres it concerns (Lubachevsky 1991). A sphere knows its
@@ -97,10 +122,10 @@ public:
   /// @param centres     in the unit cube, none closer than the sum of the radii
   /// @param sizes       radii at scale 1, mean 1/2: the scale is the mean diameter
   /// @param velocities  any unit; begin_cycle() scales them
-  /// @param spacing     edge of a search cell, about the final mean diameter
+  /// @param scale       to begin with
   GrowingSpheres(const std::vector<Vec3>& centres, const std::vector<double>& sizes,
-                 const std::vector<Vec3>& velocities, double scale, bool periodic, double spacing)
-      : bodies_(centres.size()), neighbours_(centres.size(), spacing, periodic), calendar_(centres.size()),
+                 const std::vector<Vec3>& velocities, double scale, bool periodic)
+      : bodies_(centres.size()), neighbours_(centres.size(), periodic), calendar_(centres.size()),
         near_walls_(periodic ? 0 : centres.size(), 0), scale_(scale), periodic_(periodic) {
     for (std::size_t i = 0; i < bodies_.size(); ++i)
       bodies_[i] = {centres[i], velocities[i], 0, sizes[i]};

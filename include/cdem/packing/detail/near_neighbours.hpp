@@ -6,6 +6,7 @@
 #include <cdem/packing/detail/cell_grid.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
@@ -25,9 +26,9 @@ struct Shell {
 /// @complexity  a renewal looks at the spheres of the surrounding cells; about 150 bytes a sphere near jamming
 class NearNeighbours {
 public:
-  /// @param spacing   about the mean diameter: the edge of a search cell
-  NearNeighbours(std::size_t spheres, double spacing, bool periodic)
-      : grid_(spheres, spacing, periodic), shells_(spheres), slices_(spheres), periodic_(periodic) {}
+  NearNeighbours(std::size_t spheres, bool periodic)
+      : grid_(spheres, cell_edge(spheres), periodic), shells_(spheres), slices_(spheres),
+        periodic_(periodic) {}
 
   const Shell& shell(ParticleIndex sphere) const { return shells_[sphere]; }
   const CellGrid& grid() const { return grid_; }
@@ -81,6 +82,9 @@ private:
     std::uint32_t begin = 0, count = 0, capacity = 0;
   };
   static constexpr std::size_t spare_entries = 4;
+
+  /// Cells of about two spheres: fewer would cost more empty ones, more spheres more distances.
+  static double cell_edge(std::size_t spheres) { return std::cbrt(1.8 / static_cast<double>(spheres)); }
 
   template <class Take>
   void find(ParticleIndex sphere, Take&& take) const {
