@@ -5,6 +5,7 @@
 
 #include <cdem/core/error.hpp>
 #include <cdem/geometry/box.hpp>
+#include <cdem/network/coordination.hpp>
 #include <cdem/particles/particle_set.hpp>
 
 #include <array>
@@ -36,12 +37,18 @@ struct Faces {
 /// Walled packings: the particles that touch the wall, [L17] section 2.3, a gap of `tolerance` allowed as between
 /// bonded particles. Packings cut out of a periodic one: the spheres that the plane cuts; their centres are spread
 /// over one radius inside the face, so that it is not flat.
+/// Only particles of the network's largest cluster count: one that hangs on nothing says nothing of the body's motion.
 /// @param tolerance  m, 0 or above; eps*D, the gap within which particles are bonded, is the natural choice
 /// @throws           core::InvalidInput if no particle reaches one of the faces, or two opposite ones are reached by
 ///                   particles in one plane
-/// @complexity       O(particles)
-inline Faces find_faces(const particles::ParticleSet& particles, const geometry::Box& box, double tolerance) {
+/// @complexity       O(particles + bonds)
+inline Faces find_faces(const particles::ParticleSet& particles, const network::BondNetwork& network,
+                        const geometry::Box& box, double tolerance) {
   particles.validate();
+  core::expect(network.particle_count == particles.size(), "number of particles of the network",
+               network.particle_count,
+               "that of the particle set, " + std::to_string(particles.size()) + ", is expected");
+  const network::Clusters clusters = network::clusters(network);
   box.validate();
   core::expect_not_negative(tolerance, "tolerance of the faces", "m");
   Faces faces;
@@ -52,7 +59,7 @@ inline Faces find_faces(const particles::ParticleSet& particles, const geometry:
     for (std::size_t i = 0; i < particles.size(); ++i) {
       const double depth = upper ? box.upper[axis] - particles.position[i][axis]
                                  : particles.position[i][axis] - box.lower[axis];
-      if (depth <= particles.radius[i] + tolerance) {
+      if (clusters.of[i] == clusters.largest && depth <= particles.radius[i] + tolerance) {
         face.particles.push_back(static_cast<ParticleIndex>(i));
         face.mean_position += particles.position[i][axis];
       }

@@ -28,10 +28,11 @@ struct SymmetricTension {
 
   /// @throws core::InvalidInput for a velocity that is zero or not finite, faces that cannot be found, or a particle
   ///         that reaches both faces of `axis`
-  TensionSetup apply(const particles::ParticleSet& particles, const geometry::Box& box) const {
+  TensionSetup apply(const particles::ParticleSet& particles, const network::BondNetwork& network,
+                     const geometry::Box& box) const {
     core::expect(std::isfinite(velocity) && velocity != 0, "velocity of the loaded face", velocity,
                  "a finite number other than 0 m/s is expected");
-    TensionSetup setup{axis, box, find_faces(particles, box, tolerance), {}};
+    TensionSetup setup{axis, box, find_faces(particles, network, box, tolerance), {}};
     std::vector<particles::Constraint> wanted;
     const auto prescribe = [&](const Face& face, Axis normal, double rate) {
       for (const ParticleIndex i : face.particles)

@@ -46,9 +46,10 @@ public:
     double margin = 0.15; ///< the interior begins this part of the side away from every face, in [0, 0.5[
   };
 
+  /// Only particles of the network's largest cluster count, as for the faces.
   /// @throws core::InvalidInput for a margin outside [0, 0.5[ or an interior of fewer than 8 particles
-  TensionGauge(const particles::ParticleSet& particles, const boundary::TensionSetup& setup,
-               Parameters parameters)
+  TensionGauge(const particles::ParticleSet& particles, const network::BondNetwork& network,
+               const boundary::TensionSetup& setup, Parameters parameters)
       : setup_(setup) {
     core::expect(parameters.margin >= 0 && parameters.margin < 0.5, "margin of the interior",
                  parameters.margin, "a part of the side in [0, 0.5[ is expected");
@@ -65,10 +66,11 @@ public:
     fixed_ = held(setup.faces.lower(setup.axis));
     loaded_ = held(setup.faces.upper(setup.axis));
 
+    const network::Clusters clusters = network::clusters(network);
     const Vec3 inset = parameters.margin * setup.box.size();
     for (std::size_t i = 0; i < particles.size(); ++i) {
       const Vec3& x = particles.position[i];
-      if ((x.array() >= (setup.box.lower + inset).array()).all() &&
+      if (clusters.of[i] == clusters.largest && (x.array() >= (setup.box.lower + inset).array()).all() &&
           (x.array() <= (setup.box.upper - inset).array()).all())
         interior_.push_back({static_cast<ParticleIndex>(i), x});
     }
@@ -86,8 +88,9 @@ public:
     for (Point& point : interior_) // sum of weight * displacement is then the slope
       point.weight = point.weight.cwiseQuotient(spread);
   }
-  TensionGauge(const particles::ParticleSet& particles, const boundary::TensionSetup& setup)
-      : TensionGauge(particles, setup, Parameters{}) {}
+  TensionGauge(const particles::ParticleSet& particles, const network::BondNetwork& network,
+               const boundary::TensionSetup& setup)
+      : TensionGauge(particles, network, setup, Parameters{}) {}
 
   /// Reads the faces. @complexity O(particles of the faces)
   /// @param reaction  [constraints] N, in the order of the setup's constraints

@@ -56,10 +56,11 @@ public:
   };
 
   /// Refers to its arguments; they must outlive it.
-  TensionRecorder(const particles::ParticleSet& particles, const boundary::TensionSetup& setup,
-                  const integrate::Problem<Forces>& problem, core::ThreadPool& pool, Parameters parameters)
+  TensionRecorder(const particles::ParticleSet& particles, const network::BondNetwork& network,
+                  const boundary::TensionSetup& setup, const integrate::Problem<Forces>& problem,
+                  core::ThreadPool& pool, Parameters parameters)
       : particles_(particles), setup_(setup), problem_(problem), pool_(pool), parameters_(parameters),
-        gauge_(particles, setup, parameters.gauge), youngs_rule_(parameters.convergence),
+        gauge_(particles, network, setup, parameters.gauge), youngs_rule_(parameters.convergence),
         poissons_rule_(parameters.convergence) {
     core::expect(parameters_.sample_every > 0, "sample_every", parameters_.sample_every,
                  "at least 1 step is expected");

@@ -42,7 +42,8 @@ public:
         specimen_(make_specimen(packing_.particles, packing_.box, parameters.coordination, pool_)),
         forces_(Law(parameters.law), specimen_.particles, specimen_.network),
         inertia_(particles::solid_spheres(specimen_.particles, parameters.density)),
-        setup_(with_tolerance(parameters.boundary, specimen_).apply(specimen_.particles, specimen_.box)),
+        setup_(with_tolerance(parameters.boundary, specimen_)
+                   .apply(specimen_.particles, specimen_.network, specimen_.box)),
         integrator_(parameters.integrator), stress_(std::move(stress)),
         motion_(particles::Motion::at_rest(specimen_.particles.size())) {}
 
