@@ -1,0 +1,163 @@
+#pragma once
+
+/// @file
+/// Small connected groups of nodes, the coarse unknowns of the static multigrid.
+
+#include <cdem/core/types.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace cdem::integrate::detail {
+
+/// No group, no node: what is held moves with the ground.
+inline constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+/// Which group each node belongs to, and where it stands in it.
+struct Groups {
+  std::uint32_t count = 0;
+  std::vector<std::uint32_t> group_of; ///< [nodes], none for a held node
+  std::vector<Vec3> arm;               ///< [nodes] from the centre of its group
+};
+
+/// Grows groups one after the other over the network.
+///
+/// A group starts at the first free node and takes in, until it has `size` nodes, the free neighbour the largest part of
+/// whose stiffness ties it to the group; a neighbour tied by less than `weakest_tie` of it is left out. So groups are
+/// connected, compact, and do not cross an interface that is much softer than what it joins. A group that
+/// could not grow to half its size joins the one it is tied to best.
+///
+/// @tparam Graph  size(), is_held(node), for_each_link(node, visit(link, neighbour, branch)), weight(link)
+/// @complexity    O(links), serial; the order of the nodes alone decides the outcome
+template <class Graph>
+class GroupGrower {
+public:
+  GroupGrower(const Graph& graph, std::uint32_t size, double weakest_tie)
+      : graph_(graph), size_(size), weakest_tie_(weakest_tie), total_weight_(graph.size(), 0) {
+    groups_.group_of.assign(graph.size(), none);
+    groups_.arm.assign(graph.size(), Vec3::Zero());
+    for (std::uint32_t node = 0; node < graph.size(); ++node)
+      graph.for_each_link(node, [&](auto link, std::uint32_t, const auto&) { total_weight_[node] += graph.weight(link); });
+  }
+
+  Groups grow() {
+    for (std::uint32_t seed = 0; seed < graph_.size(); ++seed) {
+      if (graph_.is_held(seed) || groups_.group_of[seed] != none)
+        continue;
+      grow_from(seed);
+      if (members_.size() >= std::max<std::size_t>(2, size_ / 2) || !join_best_neighbour())
+        ++groups_.count;
+    }
+    centre_arms();
+    return std::move(groups_);
+  }
+
+private:
+  struct Candidate {
+    std::uint32_t node;
+    double tie; ///< weight of its links to the group
+    Vec3 position;
+  };
+
+  void grow_from(std::uint32_t seed) {
+    members_.clear();
+    candidates_.clear();
+    take_in(seed, Vec3::Zero());
+    while (members_.size() < size_) {
+      auto best = candidates_.end();
+      double best_part = weakest_tie_;
+      for (auto candidate = candidates_.begin(); candidate != candidates_.end(); ++candidate) {
+        const double part = candidate->tie / total_weight_[candidate->node];
+        if (part > best_part) {
+          best_part = part;
+          best = candidate;
+        }
+      }
+      if (best == candidates_.end())
+        return;
+      const Candidate chosen = *best;
+      candidates_.erase(best); // keeps the order: the earliest found wins a tie, and groups stay round
+      take_in(chosen.node, chosen.position);
+    }
+  }
+
+  void take_in(std::uint32_t node, const Vec3& position) {
+    groups_.group_of[node] = groups_.count;
+    groups_.arm[node] = position;
+    members_.push_back(node);
+    graph_.for_each_link(node, [&](auto link, std::uint32_t neighbour, const auto& branch) {
+      if (neighbour == none || groups_.group_of[neighbour] != none)
+        return;
+      for (Candidate& candidate : candidates_)
+        if (candidate.node == neighbour) {
+          candidate.tie += graph_.weight(link);
+          return;
+        }
+      candidates_.push_back({neighbour, graph_.weight(link), position + branch()});
+    });
+  }
+
+  /// Moves the members into the group they are tied to best; false if no tie is strong enough.
+  bool join_best_neighbour() {
+    struct Neighbour {
+      std::uint32_t group;
+      double tie;
+      double strongest;
+      Vec3 shift; ///< from this group's frame to the neighbour's, along the strongest link
+    };
+    std::vector<Neighbour> neighbours;
+    double total = 0;
+    for (const std::uint32_t node : members_) {
+      total += total_weight_[node];
+      graph_.for_each_link(node, [&](auto link, std::uint32_t other, const auto& branch) {
+        if (other == none || groups_.group_of[other] == groups_.count || groups_.group_of[other] == none)
+          return;
+        const double weight = graph_.weight(link);
+        const std::uint32_t group = groups_.group_of[other];
+        auto place = std::find_if(neighbours.begin(), neighbours.end(), [&](const Neighbour& n) { return n.group == group; });
+        if (place == neighbours.end())
+          place = neighbours.insert(neighbours.end(), {group, 0, 0, Vec3::Zero()});
+        place->tie += weight;
+        if (weight > place->strongest) {
+          place->strongest = weight;
+          place->shift = groups_.arm[other] - branch() - groups_.arm[node];
+        }
+      });
+    }
+    const auto best = std::max_element(neighbours.begin(), neighbours.end(),
+                                       [](const Neighbour& a, const Neighbour& b) { return a.tie < b.tie; });
+    if (best == neighbours.end() || best->tie <= weakest_tie_ * total)
+      return false;
+    for (const std::uint32_t node : members_) {
+      groups_.group_of[node] = best->group;
+      groups_.arm[node] += best->shift;
+    }
+    return true;
+  }
+
+  void centre_arms() {
+    std::vector<Vec3> centre(groups_.count, Vec3::Zero());
+    std::vector<double> members(groups_.count, 0);
+    for (std::size_t node = 0; node < groups_.group_of.size(); ++node)
+      if (groups_.group_of[node] != none) {
+        centre[groups_.group_of[node]] += groups_.arm[node];
+        members[groups_.group_of[node]] += 1;
+      }
+    for (std::size_t node = 0; node < groups_.group_of.size(); ++node)
+      if (groups_.group_of[node] != none)
+        groups_.arm[node] -= centre[groups_.group_of[node]] / members[groups_.group_of[node]];
+  }
+
+  const Graph& graph_;
+  std::uint32_t size_;
+  double weakest_tie_;
+  std::vector<double> total_weight_; ///< [nodes] of all the links of a node
+  Groups groups_;
+  std::vector<std::uint32_t> members_;
+  std::vector<Candidate> candidates_;
+};
+
+} // namespace cdem::integrate::detail

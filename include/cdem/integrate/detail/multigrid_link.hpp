@@ -1,0 +1,140 @@
+#pragma once
+
+/// @file
+/// The two kinds of link of the static multigrid: a bond between particles, and the sum of the bonds between two groups.
+
+#include <cdem/core/types.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <utility>
+
+namespace cdem::integrate {
+
+/// Tells the bonds of a body whose forces are linear: ends, direction, length and four stiffnesses of each.
+///
+/// The stiffnesses multiply the bond's stretch, shear, twist and bend: with n the direction and L the length,
+/// slip = u_j - u_i - L (th_i + th_j)/2 x n and turn = th_j - th_i.              [L17] section 2.2, frame-free form
+template <class F>
+concept LinearBonds = requires(const F& forces, BondIndex b, ParticleIndex i) {
+  { forces.bond_count() } -> std::convertible_to<std::size_t>;
+  { forces.ends(b) } -> std::convertible_to<std::pair<ParticleIndex, ParticleIndex>>;
+  { forces.direction(b) } -> std::convertible_to<Vec3>;
+  { forces.length(b) } -> std::convertible_to<double>;
+  { forces.stiffness(b).normal } -> std::convertible_to<double>;
+  { forces.stiffness(b).tangential } -> std::convertible_to<double>;
+  { forces.stiffness(b).torsion } -> std::convertible_to<double>;
+  { forces.stiffness(b).bending } -> std::convertible_to<double>;
+  { *forces.bonds_of(i).begin() } -> std::convertible_to<BondIndex>;
+};
+
+namespace detail {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Float4 = Eigen::Vector4f;
+
+/// [v]x, the matrix whose product with w is v x w.
+inline Mat3 cross_matrix(const Vec3& v) {
+  Mat3 m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+/// S' C S for the rigid motion carried from a frame to the point `arm` away from it: S = [1, -[arm]x; 0, 1].
+inline Matrix6 carried(const Matrix6& stiffness, const Vec3& arm) {
+  const Mat3 lever = -cross_matrix(arm);
+  Matrix6 half = stiffness; // C S
+  half.rightCols<3>() += stiffness.leftCols<3>() * lever;
+  Matrix6 whole = half; // S' C S
+  whole.bottomRows<3>() += lever.transpose() * half.topRows<3>();
+  return whole;
+}
+
+/// Translation and rotation of a node, or force and moment on it; the fourth lane of each means nothing.
+struct Twist {
+  Float4 linear = Float4::Zero();
+  Float4 angular = Float4::Zero();
+
+  static Twist load(const float* component) {
+    return {Eigen::Map<const Float4, Eigen::Aligned16>(component),
+            Eigen::Map<const Float4, Eigen::Aligned16>(component + 4)};
+  }
+  void store(float* component) const {
+    Eigen::Map<Float4, Eigen::Aligned16>{component} = linear;
+    Eigen::Map<Float4, Eigen::Aligned16>{component + 4} = angular;
+  }
+  Twist& operator+=(const Twist& other) {
+    linear += other.linear;
+    angular += other.angular;
+    return *this;
+  }
+  Twist& operator-=(const Twist& other) {
+    linear -= other.linear;
+    angular -= other.angular;
+    return *this;
+  }
+  friend Twist operator*(float factor, const Twist& twist) {
+    return {factor * twist.linear, factor * twist.angular};
+  }
+  /// The same with zero in the lanes that mean nothing.
+  Twist clean() const {
+    Twist result = *this;
+    result.linear[3] = result.angular[3] = 0;
+    return result;
+  }
+};
+
+/// What a link's relative motion pulls: force and moment at its middle, on its first end.
+struct LinkPull {
+  Float4 force;
+  Float4 moment;
+};
+
+/// A bond between two particles, in single precision: 32 bytes.
+struct BondLink {
+  std::array<float, 4> direction_and_half_length; ///< n, L/2
+  float tangential;                               ///< K_t
+  float normal_excess;                            ///< K_n - K_t
+  float bending;                                  ///< E_mu I / L
+  float torsion_excess;                           ///< S_n - E_mu I / L
+
+  Float4 half_branch() const {
+    return direction_and_half_length[3] * Eigen::Map<const Float4>(direction_and_half_length.data());
+  }
+  LinkPull pull(const Float4& slip, const Float4& turn) const {
+    const Float4 n = Eigen::Map<const Float4>(direction_and_half_length.data());
+    return {tangential * slip + (normal_excess * slip.dot(n)) * n, bending * turn + (torsion_excess * turn.dot(n)) * n};
+  }
+};
+static_assert(sizeof(BondLink) == 32);
+
+/// Product of a 6x6 matrix stored column by column, with one float after it that may be read, and a twist.
+inline Twist multiply(const float* columns, const Float4& linear, const Float4& angular) {
+  Twist sum;
+  for (int k = 0; k < 6; ++k) {
+    const float x = k < 3 ? linear[k] : angular[k - 3];
+    sum.linear += x * Eigen::Map<const Float4>(columns + 6 * k);
+    sum.angular += x * Eigen::Map<const Float4>(columns + 6 * k + 3);
+  }
+  return sum;
+}
+
+/// All the bonds between two groups, as one link with a full stiffness at the middle of its branch: 160 bytes.
+struct GroupLink {
+  std::array<float, 40> data{}; ///< 36 of the symmetric stiffness, 3 of the half branch, 1 unused
+
+  Float4 half_branch() const { return Eigen::Map<const Float4>(data.data() + 36); }
+  LinkPull pull(const Float4& slip, const Float4& turn) const {
+    const Twist product = multiply(data.data(), slip, turn);
+    return {product.linear, product.angular};
+  }
+};
+static_assert(sizeof(GroupLink) == 160);
+
+} // namespace detail
+} // namespace cdem::integrate
