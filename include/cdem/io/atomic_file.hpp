@@ -16,6 +16,8 @@
 #include <string_view>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
+#include <vector>
 
 namespace cdem::io {
 
@@ -47,7 +49,7 @@ public:
     }
     if (!file_)
       fail(reason());
-    std::setvbuf(file_.get(), nullptr, _IOFBF, buffer_size);
+    std::setvbuf(file_.get(), buffer_.data(), _IOFBF, buffer_.size());
   }
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -104,8 +106,6 @@ public:
   }
 
 private:
-  static constexpr std::size_t buffer_size = 1 << 18;
-
   struct Close {
     void operator()(std::FILE* file) const noexcept { std::fclose(file); }
   };
@@ -128,6 +128,7 @@ private:
 
   std::filesystem::path path_;
   std::filesystem::path temporary_;
+  std::vector<char> buffer_ = std::vector<char>(1 << 18); ///< must outlive file_
   std::unique_ptr<std::FILE, Close> file_;
   std::uint64_t size_ = 0;
 };

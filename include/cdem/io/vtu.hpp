@@ -213,17 +213,18 @@ public:
   }
 
   /// Adds the cells of one type whose corners are listed one after the other.
-  /// @param corners  [cells x corners of the type], must live until the file is written
+  /// @param corners  [cells x corners of the type], must live until the file is written; a temporary container is
+  ///                 refused by the compiler
   /// @throws core::InvalidInput unless it holds whole cells
-  template <std::integral Index>
-  void cells(CellType type, std::span<const Index> corners) {
-    core::expect(corners.size() % corners_of(type) == 0, "number of corners", corners.size(),
+  template <class Range>
+  requires std::ranges::contiguous_range<Range> && std::ranges::borrowed_range<Range> &&
+      std::integral<std::ranges::range_value_t<Range>>
+  void cells(CellType type, Range&& corners) {
+    const std::size_t count = std::ranges::size(corners);
+    core::expect(count % corners_of(type) == 0, "number of corners", count,
                  "a multiple of " + std::to_string(corners_of(type)) + " is expected");
-    cells(type, corners.size() / corners_of(type), [corners](std::size_t k) { return corners[k]; });
-  }
-  template <std::integral Index>
-  void cells(CellType type, const std::vector<Index>& corners) {
-    cells(type, std::span<const Index>(corners));
+    cells(type, count / corners_of(type),
+          [data = std::ranges::cdata(corners)](std::size_t k) { return data[k]; });
   }
 
   /// Makes each point a cell, so that it is drawn.
