@@ -6,6 +6,8 @@
 #include <cdem/core/error.hpp>
 #include <cdem/core/types.hpp>
 
+#include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -28,23 +30,23 @@ struct BondNetwork {
     return particle_count == 0 ? 0 : 2.0 * static_cast<double>(size()) / static_cast<double>(particle_count);
   }
 
-  /// @throws core::InvalidInput for arrays of different lengths, an end outside the particles, a bond of a
-  /// particle
-  ///         with itself, or a branch that is not a finite vector of positive length; names the first such
-  ///         bond
+  /// @throws core::InvalidInput for arrays of different lengths, an end outside the particles, a bond of a particle
+  ///         with itself, or a branch that is not a finite vector of positive length; names the first such bond
   void validate() const {
     core::expect(second.size() == size() && branch.size() == size(), "number of bonds", size(),
                  "first, second and branch of one length are expected");
     for (std::size_t b = 0; b < size(); ++b) {
-      const std::string bond = "bond " + std::to_string(b);
-      core::expect(first[b] < particle_count, "first particle of " + bond, first[b],
-                   "a number below " + std::to_string(particle_count) + " is expected");
-      core::expect(
-          second[b] < particle_count && second[b] != first[b], "second particle of " + bond, second[b],
-          "a number below " + std::to_string(particle_count) + " other than the first's is expected");
+      if (first[b] >= particle_count)
+        core::reject("first particle of bond " + std::to_string(b), first[b],
+                     "a number below " + std::to_string(particle_count) + " is expected");
+      if (second[b] >= particle_count || second[b] == first[b])
+        core::reject("second particle of bond " + std::to_string(b), second[b],
+                     "a number below " + std::to_string(particle_count) +
+                         " other than the first's is expected");
       const double length = branch[b].norm();
-      core::expect(std::isfinite(length) && length > 0, "length of " + bond, length,
-                   "a finite length above 0 m is expected: do two particles share one centre?");
+      if (!(std::isfinite(length) && length > 0))
+        core::reject("length of bond " + std::to_string(b), length,
+                     "a finite length above 0 m is expected: do two particles share one centre?");
     }
   }
 };
