@@ -1,0 +1,69 @@
+// Writes a run's output of known values into the folder given; plot.py draws it with scripts/plot.
+
+#include <cdem/io/results.hpp>
+#include <cdem/io/specimens_vtu.hpp>
+#include <cdem/stress/tessellation/hexahedra.hpp>
+
+#include <iostream>
+#include <numbers>
+
+using namespace cdem;
+
+namespace {
+
+void write_curve(const std::filesystem::path& path) {
+  io::CsvWriter csv(path, {"step", "time_s", "youngs_modulus_pa", "youngs_modulus_average_pa",
+                           "poissons_ratio", "poissons_ratio_average", "reaction_fixed_n",
+                           "reaction_loaded_n", "kinetic_j", "elastic_j", "external_work_j", "dissipated_j"});
+  for (int step = 50; step <= 20'000; step += 50) {
+    const double t = step / 20e3;
+    const double swing = std::exp(-3 * t) * std::cos(80 * t);
+    csv.row(step, 2e-5 * step, 357e9 * (1 + 0.4 * swing), 357e9 * (1 + 0.01 * swing / t),
+            0.23 * (1 - 0.3 * swing), 0.23 * (1 - 0.01 * swing / t), 1, -1, 1e-7, 1e-5 * t * t,
+            1e-7 + 1e-5 * t * t + 1e-6 * t, 1e-6 * t);
+  }
+  csv.commit();
+}
+
+void write_angles(const std::filesystem::path& path) {
+  io::CsvWriter csv(path, {"plane", "class", "angle_rad", "fraction"});
+  for (const char* plane : {"xy", "yz", "zx"})
+    for (int k = 0; k < 32; ++k)
+      csv.row(plane, k, (k + 0.5) * std::numbers::pi / 16, 1 / 32.0 + (k % 2 == 0 ? 1e-3 : -1e-3));
+  csv.commit();
+}
+
+void write_specimens(const std::filesystem::path& path) {
+  const stress::tessellation::Hexahedra tessellation(geometry::Box::cube(0.01, false), {4, 5, 6});
+  stress::StressField field;
+  for (std::size_t s = 0; s < tessellation.cell_count(); ++s) {
+    field.stress.push_back(Vec3(2e8 + 1e6 * static_cast<double>(s), 1e6, -1e6).asDiagonal());
+    field.volume.push_back(tessellation.volume(s));
+    field.particles.push_back(80);
+  }
+  io::write_specimens_vtu(path, tessellation, io::fields_of(field));
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: plot FOLDER\n";
+    return 2;
+  }
+  const std::filesystem::path folder = argv[1];
+  std::filesystem::create_directories(folder);
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) // figures of an earlier run
+    std::filesystem::remove(entry.path());
+  write_curve(folder / "alumina_convergence.csv");
+  write_curve(folder / "silica_convergence.csv");
+  write_angles(folder / "angles.csv");
+  write_specimens(folder / "alumina_specimens.vtu");
+  io::Results results;
+  results.add({.quantity = "alumina.youngs_modulus",
+               .value = 357e9,
+               .unit = "Pa",
+               .reference = 350e9,
+               .source = "[L17]"});
+  results.write_csv(folder / "results.csv");
+}
