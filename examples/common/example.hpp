@@ -1,0 +1,106 @@
+#pragma once
+
+// What every example shares: the common options, one-line errors, the plotting script.
+
+#include <cdem/core/error.hpp>
+#include <cdem/core/progress.hpp>
+#include <cdem/io/interrupt.hpp>
+#include <cdem/io/terminal_progress.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace cdem::examples {
+
+/// The options that every example takes.
+struct CommonOptions {
+  std::uint32_t particles = 10000;
+  std::uint64_t seed = 1;
+  int threads = 0; ///< 0: all processors
+  std::filesystem::path out;
+  bool quick = false;
+  bool plot = true;
+
+  void add_to(CLI::App& app, std::uint32_t fewest_particles) {
+    app.add_option("--particles", particles, "Number of particles")
+        ->check(CLI::Range(fewest_particles, std::uint32_t{100000000}))
+        ->capture_default_str();
+    app.add_option("--seed", seed, "Seed of the random numbers: the same seed gives the same results")
+        ->capture_default_str();
+    app.add_option("--threads", threads, "Threads, 0 for all processors; results do not depend on it")
+        ->check(CLI::Range(0, 4096))
+        ->capture_default_str();
+    app.add_option("--out", out, "Folder for the results")
+        ->capture_default_str()
+        ->check([](const std::string& text) {
+          return text.empty() ? std::string("a folder's name is expected") : std::string();
+        });
+    app.add_flag("--quick", quick, "A small run of a few seconds, to see that everything works");
+    app.add_flag("!--no-plot", plot, "Draw no pictures");
+  }
+};
+
+/// Runs `body` and turns what goes wrong into one line on stderr and an exit status: 2 for a bad option or value,
+/// 130 for Ctrl-C, 1 for anything else.
+template <class Body>
+int guarded(const char* program, Body&& body) {
+  try {
+    body();
+    return 0;
+  } catch (const core::InvalidInput& error) {
+    std::fprintf(stderr, "%s: %s\n", program, error.what());
+    return 2;
+  } catch (const core::Interrupted& error) {
+    std::fprintf(stderr, "%s: %s\n", program, error.what());
+    return 130;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", program, error.what());
+    return 1;
+  }
+}
+
+/// Parses the command line; -1 to go on, else the exit status (0 after --help, 2 after one line of complaint).
+inline int parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return -1;
+  } catch (const CLI::CallForHelp& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    std::string text = error.what();
+    for (char& c : text)
+      if (c == '\n')
+        c = ' ';
+    std::fprintf(stderr, "%s: %s; --help lists what is accepted\n", app.get_name().c_str(), text.c_str());
+    return 2;
+  }
+}
+
+/// Draws the pictures of a results folder with scripts/plot; says in one line why there are none.
+inline void draw(const std::filesystem::path& folder) {
+#ifdef CDEM_PLOT_SCRIPT
+  std::fflush(nullptr);
+  const pid_t child = fork();
+  if (child == 0) {
+    execlp(CDEM_PLOT_SCRIPT, CDEM_PLOT_SCRIPT, folder.c_str(), static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  int status = 0;
+  if (child > 0)
+    waitpid(child, &status, 0);
+  if (child < 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    std::printf("No pictures were drawn; scripts/plot %s draws them where Python has Matplotlib.\n",
+                folder.c_str());
+#else
+  std::printf("scripts/plot %s draws the pictures.\n", folder.c_str());
+#endif
+}
+
+} // namespace cdem::examples

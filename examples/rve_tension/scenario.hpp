@@ -1,0 +1,341 @@
+#pragma once
+
+// A homogeneous cube in tension: [L17] section 2.3, alumina and silica glass.
+
+#include <cdem/bond/beam.hpp>
+#include <cdem/bond/linear_forces.hpp>
+#include <cdem/boundary/symmetric_tension.hpp>
+#include <cdem/homogenize/tension_recorder.hpp>
+#include <cdem/integrate/density_scaling.hpp>
+#include <cdem/integrate/rayleigh_quotient.hpp>
+#include <cdem/integrate/velocity_verlet.hpp>
+#include <cdem/io/checkpoint.hpp>
+#include <cdem/io/packing_file.hpp>
+#include <cdem/network/anisotropy.hpp>
+#include <cdem/network/coordination.hpp>
+#include <cdem/packing/lubachevsky_stillinger.hpp>
+#include <cdem/simulation/specimen.hpp>
+#include <cdem/stress/closure.hpp>
+#include <cdem/stress/love_weber.hpp>
+#include <cdem/stress/statistics.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cdem::examples::rve_tension {
+
+/// A material of the paper with its printed micro parameters and what it prints for them, [L17] section 2.3.
+struct Material {
+  std::string name;
+  bond::Material micro;
+  double density;        ///< kg/m^3, of the solid; scaled to the time step (not in the paper)
+  double time_step;      ///< s, printed for 700,000 particles
+  double youngs_modulus; ///< Pa, printed
+  double poissons_ratio; ///< printed
+};
+
+inline std::vector<Material> paper_materials() {
+  return {{"alumina", {.youngs_modulus = 2536e9, .radius_ratio = 0.545}, 3900, 2.15e-5, 350e9, 0.24},
+          {"silica", {.youngs_modulus = 220.2e9, .radius_ratio = 0.722}, 2200, 5.21e-5, 65e9, 0.20}};
+}
+
+struct Params {
+  packing::LubachevskyStillinger::Parameters packing = {};
+  double coordination = 6.2;   ///< Z, [L17] section 2.1
+  Axis axis = Axis::x;         ///< of the tension
+  double velocity = 1e-5;      ///< m/s, [L17] section 2.3
+  double safety = 0.5;         ///< D_t, [L17] section 2.3
+  double damping_ratio = 0.01; ///< of the first axial vibration (not in the paper)
+  integrate::DensityScaling scaling = integrate::DensityScaling::per_particle;
+  std::uint64_t most_steps = 50000; ///< end of the run where it has not converged before
+  homogenize::ConvergenceRule::Parameters convergence = {}; ///< [L17] section 5.3
+  double particles_per_specimen = 80;                       ///< [L17] section 2.5: CoV of the stress 10 %
+  int threads = 0;
+  std::filesystem::path checkpoints = {}; ///< folder for checkpoints; none when empty
+  bool resume = false;                    ///< go on from the checkpoints in it
+
+  /// @throws core::InvalidInput for what no stage would accept, before anything is computed or written
+  void validate() const {
+    packing::LubachevskyStillinger{packing};
+    core::expect_positive(coordination, "coordination");
+    core::expect(safety > 0 && safety < 1, "safety", safety, "a number in ]0, 1[ is expected");
+    core::expect_not_negative(damping_ratio, "damping");
+    core::expect(std::isfinite(velocity) && velocity != 0, "velocity", velocity,
+                 "a number other than 0 m/s is expected");
+    core::expect_positive(particles_per_specimen, "particles per specimen");
+    core::expect(particles_per_specimen <= packing.particles, "particles per specimen",
+                 particles_per_specimen,
+                 "at most the number of particles, " + std::to_string(packing.particles) + ", is expected");
+    homogenize::ConvergenceRule{convergence};
+    core::expect(most_steps > convergence.interval, "steps", most_steps,
+                 "more than the interval of the convergence checks, " + std::to_string(convergence.interval) +
+                     ", is expected");
+  }
+};
+
+/// What one material gave.
+struct MaterialResult {
+  Material material;
+  homogenize::TensionModuli moduli;
+  std::vector<homogenize::TensionSample> samples;
+  particles::Motion motion;             ///< at the end of the run
+  std::vector<Vec3> bond_forces;        ///< [bonds] N, averaged over time, at the final strain
+  stress::StressField stress;           ///< of those
+  double strain = 0;                    ///< eps_L by the faces at the end
+  double force_fixed = 0;               ///< N, averaged over time, at that strain
+  double force_loaded = 0;              ///< N
+  double moment_of_reactions = 0;       ///< N m, axial component of sum of F (x) x
+  double section = 0;                   ///< m^2
+  integrate::CriticalTimeStep critical; ///< before density scaling
+  integrate::DensityScalingReport scaling;
+  integrate::EnergyLedger energy; ///< at the end
+  bool converged = false;
+  double seconds = 0;
+};
+
+struct Result {
+  packing::LubachevskyStillinger::Report packing; ///< of a packing made in this run; zero when it was loaded
+  bool packing_loaded = false;
+  simulation::Specimen specimen;
+  boundary::TensionSetup setup;
+  network::Anisotropy<> anisotropy;
+  network::DegreeHistogram degrees;
+  std::uint64_t outside_largest = 0; ///< particles that hang on nothing
+  stress::tessellation::Hexahedra tessellation;
+  std::vector<MaterialResult> materials;
+};
+
+namespace detail {
+
+using Recorder = homogenize::TensionRecorder<bond::LinearForces>;
+
+/// Names everything that the result of a packing depends on: a packing file with the same text is the same packing.
+inline std::string describe(const packing::LubachevskyStillinger::Parameters& p) {
+  std::string text;
+  const auto line = [&](const char* name, const auto& value) {
+    std::ostringstream out;
+    out.precision(17);
+    out << name << " = " << value << '\n';
+    text += out.str();
+  };
+  line("generator", "Lubachevsky-Stillinger");
+  line("particles", p.particles);
+  line("density", p.density);
+  line("cov", p.cov);
+  line("truncation", p.truncation);
+  line("smallest_radius", p.smallest_radius);
+  line("growth_rate", p.growth_rate);
+  line("fluid_growth_rate", p.fluid_growth_rate);
+  line("pressure_limit", p.pressure_limit);
+  line("side", p.side);
+  line("boundary", p.boundary == packing::Boundary::periodic ? "periodic" : "walls");
+  line("seed", p.seed);
+  return text;
+}
+
+/// Writes or reads one part of the recorder's state; Archive is a CheckpointWriter or a CheckpointReader.
+struct Save {
+  io::CheckpointWriter& file;
+  void operator()(const std::string& name, const homogenize::RunningAverage& average) {
+    file.add(name, std::array{average.mean(), static_cast<double>(average.count())});
+  }
+  void operator()(const std::string& name, const homogenize::ConvergenceRule& rule) {
+    const auto& state = rule.state();
+    file.add(name, std::array{state.last, state.checked ? 1.0 : 0.0, static_cast<double>(state.passed)});
+  }
+  void operator()(const std::string& name, const std::vector<Vec3>& values) { file.add(name, values); }
+  void operator()(const std::string& name, const std::vector<homogenize::TensionSample>& samples) {
+    std::vector<std::array<double, 12>> rows;
+    for (const auto& s : samples)
+      rows.push_back({s.step, s.time, s.youngs_modulus, s.youngs_modulus_average, s.poissons_ratio,
+                      s.poissons_ratio_average, s.force_fixed, s.force_loaded, s.kinetic, s.elastic,
+                      s.external_work, s.dissipated});
+    file.add(name, rows);
+  }
+};
+struct Load {
+  const io::CheckpointReader& file;
+  void operator()(const std::string& name, homogenize::RunningAverage& average) {
+    const auto v = numbers(name, 2);
+    average = homogenize::RunningAverage::restore(v[0], static_cast<std::uint64_t>(v[1]));
+  }
+  void operator()(const std::string& name, homogenize::ConvergenceRule& rule) {
+    const auto v = numbers(name, 3);
+    rule.restore({v[0], v[1] != 0, static_cast<int>(v[2])});
+  }
+  void operator()(const std::string& name, std::vector<Vec3>& values) { file.read(name, values); }
+  void operator()(const std::string& name, std::vector<homogenize::TensionSample>& samples) {
+    samples.clear();
+    for (const auto& r : file.read<std::array<double, 12>>(name))
+      samples.push_back({r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8], r[9], r[10], r[11]});
+  }
+
+private:
+  std::vector<double> numbers(const std::string& name, std::size_t count) const {
+    auto values = file.read<double>(name);
+    if (values.size() != count)
+      file.fail("its section " + name + " does not hold " + std::to_string(count) + " numbers");
+    return values;
+  }
+};
+
+inline void save(const std::filesystem::path& path, const std::string& identity,
+                 const particles::Motion& motion, Recorder& recorder) {
+  io::CheckpointWriter file(path);
+  file.add("identity", identity);
+  file.add("displacement", motion.displacement);
+  file.add("velocity", motion.velocity);
+  file.add("acceleration", motion.acceleration);
+  file.add("energy", std::array{motion.energy.initial, motion.energy.external_work, motion.energy.dissipated,
+                                motion.energy.external_power, motion.energy.dissipated_power});
+  file.add("time", motion.time);
+  file.add("step", motion.step);
+  recorder.visit_state(Save{file});
+  file.commit();
+}
+
+inline void load(const std::filesystem::path& path, const std::string& identity, particles::Motion& motion,
+                 Recorder& recorder) {
+  const io::CheckpointReader file(path);
+  if (file.read_text("identity") != identity)
+    file.fail("it belongs to a run with other parameters; run with the same options, or without --resume");
+  file.read("displacement", motion.displacement);
+  file.read("velocity", motion.velocity);
+  file.read("acceleration", motion.acceleration);
+  const auto energy = file.read<double>("energy");
+  if (energy.size() != 5)
+    file.fail("its section energy does not hold 5 numbers");
+  motion.energy = {energy[0], energy[1], energy[2], energy[3], energy[4]};
+  motion.time = file.read_value<double>("time");
+  motion.step = file.read_value<std::uint64_t>("step");
+  recorder.visit_state(Load{file});
+}
+
+/// The packing: loaded when resuming and it was made with the same parameters, else made and saved.
+inline packing::Packing<packing::LubachevskyStillinger::Report>
+make_packing(const Params& params, bool& loaded, const core::Monitor& monitor) {
+  const std::filesystem::path file = params.checkpoints / "packing.cdem";
+  const std::string identity = describe(params.packing);
+  if (params.resume && !params.checkpoints.empty() && std::filesystem::exists(file)) {
+    io::PackingFile kept = io::load_packing(file);
+    if (kept.parameters == identity) {
+      loaded = true;
+      packing::LubachevskyStillinger::Report report;
+      report.density = kept.particles.solid_volume() / kept.box.volume();
+      return {std::move(kept.particles), kept.box, report};
+    }
+  }
+  auto packing = packing::LubachevskyStillinger(params.packing).pack(monitor);
+  packing.report.require_reached();
+  if (!params.checkpoints.empty())
+    io::save_packing(file, packing.particles, packing.box, identity);
+  return packing;
+}
+
+inline MaterialResult pull(const Material& material, const Params& params, const Result& shared,
+                           core::ThreadPool& pool, const core::Monitor& monitor) {
+  const simulation::Specimen& specimen = shared.specimen;
+  const bond::LinearForces forces(bond::Beam<>({.materials = {material.micro}}), specimen.particles,
+                                  specimen.network);
+  particles::Inertia inertia = particles::solid_spheres(specimen.particles, std::vector{material.density});
+  MaterialResult result;
+  result.material = material;
+  result.critical = integrate::critical_time_step(forces, inertia);
+  result.scaling =
+      integrate::scale_density(forces, inertia, material.time_step, params.safety, params.scaling, pool);
+
+  const integrate::Problem<bond::LinearForces> problem{forces, inertia, shared.setup.constraints};
+  const auto k = core::index_of(params.axis);
+  const double omega = integrate::first_axial_frequency(problem, specimen.particles, specimen.box.lower[k],
+                                                        specimen.box.upper[k], params.axis, pool);
+  const integrate::VelocityVerlet verlet(
+      {.time_step = material.time_step, .damping = integrate::Damping::of_mode(params.damping_ratio, omega)});
+  Recorder recorder(specimen.particles, specimen.network, shared.setup, problem, pool,
+                    {.steady_from = params.convergence.interval, .convergence = params.convergence});
+  particles::Motion motion = particles::Motion::at_rest(specimen.particles.size());
+
+  const std::filesystem::path checkpoint = params.checkpoints / (material.name + ".checkpoint");
+  std::ostringstream identity;
+  identity.precision(17);
+  identity << describe(params.packing) << "coordination = " << params.coordination
+           << "\naxis = " << core::name_of(params.axis) << "\nvelocity = " << params.velocity
+           << "\nsafety = " << params.safety << "\ndamping_ratio = " << params.damping_ratio
+           << "\nscaling = " << static_cast<int>(params.scaling)
+           << "\ninterval = " << params.convergence.interval
+           << "\ntolerance = " << params.convergence.tolerance << '\n';
+  if (params.resume && !params.checkpoints.empty() && std::filesystem::exists(checkpoint))
+    load(checkpoint, identity.str(), motion, recorder);
+
+  try {
+    while (!recorder.converged() && motion.step < params.most_steps) {
+      // in portions, so that a checkpoint is never far behind
+      const std::uint64_t portion =
+          std::min<std::uint64_t>(params.convergence.interval, params.most_steps - motion.step);
+      const core::Monitor shown([&](const core::Progress& progress) {
+        const double done = static_cast<double>(motion.step) / static_cast<double>(params.most_steps);
+        monitor.report(
+            {material.name, done, progress.detail + " of at most " + std::to_string(params.most_steps)});
+      });
+      result.seconds += verlet.run(problem, motion, portion, pool, std::ref(recorder), shown).seconds;
+      if (!params.checkpoints.empty())
+        save(checkpoint, identity.str(), motion, recorder);
+    }
+  } catch (const core::Interrupted&) {
+    if (params.checkpoints.empty())
+      throw;
+    save(checkpoint, identity.str(), motion, recorder);
+    throw core::Interrupted("interrupted in " + material.name + " at step " + std::to_string(motion.step) +
+                            "; the same command with --resume goes on from there");
+  }
+
+  result.converged = recorder.converged();
+  result.moduli = recorder.moduli();
+  result.samples = recorder.samples();
+  result.strain = recorder.strain(motion);
+  result.bond_forces = recorder.bond_forces(result.strain);
+  result.force_fixed = recorder.force_fixed(result.strain);
+  result.force_loaded = recorder.force_loaded(result.strain);
+  result.moment_of_reactions = recorder.moment_of_reactions(result.strain);
+  result.section = recorder.section();
+  result.energy = integrate::energy_ledger(problem, motion, pool);
+  result.stress = stress::LoveWeber<>(shared.tessellation)
+                      .estimate(specimen.particles, specimen.network, result.bond_forces, pool);
+  result.motion = std::move(motion);
+  return result;
+}
+
+} // namespace detail
+
+/// Packs, bonds and pulls; every stage reports to the monitor.
+inline Result run(const Params& params, const core::Monitor& monitor = {}) {
+  params.validate();
+  core::ThreadPool pool(params.threads);
+  bool loaded = false;
+  auto packing = detail::make_packing(params, loaded, monitor);
+  simulation::Specimen specimen =
+      simulation::make_specimen(packing.particles, packing.box, params.coordination, pool);
+  const boundary::SymmetricTension tension{params.axis, params.velocity, specimen.gap()};
+  auto setup = tension.apply(specimen.particles, specimen.network, specimen.box);
+  Result result{packing.report,
+                loaded,
+                std::move(specimen),
+                std::move(setup),
+                {},
+                {},
+                0,
+                stress::tessellation::Hexahedra::holding(packing.box.without_periodicity(),
+                                                         packing.particles.size(),
+                                                         params.particles_per_specimen),
+                {}};
+  result.anisotropy = network::anisotropy(result.specimen.network);
+  result.degrees = network::degree_histogram(result.specimen.network);
+  result.outside_largest = network::clusters(result.specimen.network).outside_largest();
+  for (const Material& material : paper_materials())
+    result.materials.push_back(detail::pull(material, params, result, pool, monitor));
+  return result;
+}
+
+} // namespace cdem::examples::rve_tension
