@@ -15,7 +15,9 @@ public:
   using Report = ::Report;
   explicit Generator(Parameters) {}
 #ifdef CDEM_REPAIRED
-  cdem::packing::Packing<Report> pack(const cdem::core::Monitor&) { return {}; }
+  cdem::packing::Packing<Report> pack(const cdem::core::Monitor&) {
+    return {};
+  }
 #endif
 };
 

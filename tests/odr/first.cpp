@@ -5,6 +5,10 @@
 
 #include "units.hpp"
 
-Addresses addresses_in_first() { return addresses(); }
+Addresses addresses_in_first() {
+  return addresses();
+}
 
-int main() { return addresses_in_first() == addresses_in_second() ? 0 : 1; }
+int main() {
+  return addresses_in_first() == addresses_in_second() ? 0 : 1;
+}

@@ -2,4 +2,6 @@
 
 #include "units.hpp"
 
-Addresses addresses_in_second() { return addresses(); }
+Addresses addresses_in_second() {
+  return addresses();
+}

@@ -7,7 +7,9 @@
 /// Where one translation unit finds some functions and constants of the toolkit.
 using Addresses = std::array<const void*, 4>;
 
-inline const void* address(auto* function) { return reinterpret_cast<const void*>(function); }
+inline const void* address(auto* function) {
+  return reinterpret_cast<const void*>(function);
+}
 
 static Addresses addresses() {
   return {address(&cdem::core::expect_positive), address(&cdem::core::index_of),
