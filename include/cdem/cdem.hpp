@@ -35,8 +35,10 @@
 #include <cdem/io/specimens_vtu.hpp>
 #include <cdem/io/terminal_progress.hpp>
 #include <cdem/io/vtu.hpp>
+#include <cdem/network/anisotropy.hpp>
 #include <cdem/network/bond_network.hpp>
 #include <cdem/network/bonds.hpp>
+#include <cdem/network/coordination.hpp>
 #include <cdem/network/kd_tree.hpp>
 #include <cdem/network/neighbour_search.hpp>
 #include <cdem/packing/lubachevsky_stillinger.hpp>
@@ -45,6 +47,7 @@
 #include <cdem/particles/inertia.hpp>
 #include <cdem/particles/motion.hpp>
 #include <cdem/particles/particle_set.hpp>
+#include <cdem/particles/space_filling_order.hpp>
 #include <cdem/particles/spatial_field.hpp>
 #include <cdem/stress/closure.hpp>
 #include <cdem/stress/love_weber.hpp>
