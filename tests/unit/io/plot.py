@@ -53,17 +53,17 @@ def check_refusals():
         folder = pathlib.Path(name)
         empty = run(folder)
         assert empty.returncode == 1 and "holds nothing to draw" in empty.stderr, empty
-        for file, content, why in [
+        damaged = [
             ("a_convergence.csv", "step,x\n1,2\n", "column 'youngs_modulus_average_pa' is missing"),
+            ("a_specimens.vtu", "<VTKFile/>", "its data are not raw and appended"),
             ("angles.csv", "", "it holds no rows"),
             ("b.csv", "x,y\n1\n", "its rows differ in length"),
-            ("a_specimens.vtu", "<VTKFile/>", "its data are not raw and appended"),
-        ]:
+        ]
+        for file, content, _ in damaged:
             (folder / file).write_text(content)
-            refused = run(folder)
-            assert refused.returncode == 1, refused
-            assert refused.stderr == f"plot: {folder / file}: {why}\n", refused.stderr
-            (folder / file).unlink()
+        refused = run(folder)
+        assert refused.returncode == 1, refused
+        assert refused.stderr == "".join(f"plot: {folder / file}: {why}\n" for file, _, why in damaged), refused.stderr
 
 
 def main():
