@@ -68,6 +68,11 @@ int main(int argc, char** argv) {
     progress.end_line();
 
     std::printf("%s\n", rve::tabulate(params, result).text().c_str());
+    if (!result.packing_loaded && !result.packing.reached())
+      std::printf("The packing jammed at a density of %.4f, below the %.4g asked for: walls and equal sizes "
+                  "keep spheres "
+                  "apart, --growth below %g packs denser.\n",
+                  result.packing.density, params.packing.density, params.packing.growth_rate);
     for (const auto& m : result.materials)
       if (!m.converged)
         std::printf("%s: E and nu had not settled to %g by step %llu; --steps allows more.\n",

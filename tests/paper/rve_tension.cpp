@@ -52,7 +52,12 @@ TEST_CASE("the cube in tension is in balance and its specimens add up") {
     params.packing.boundary = boundary;
     const rve::Result result = rve::run(params);
     REQUIRE(result.materials.size() == 2);
-    CHECK(result.specimen.density() == doctest::Approx(0.64).epsilon(1e-9));
+    // walls keep a small cube from reaching the density asked for: it is jammed and the report says so
+    if (result.packing.reached())
+      CHECK(result.specimen.density() == doctest::Approx(0.64).epsilon(1e-9));
+    else
+      CHECK(result.packing.reason == packing::StopReason::pressure_limit);
+    CHECK((boundary == packing::Boundary::walls || result.packing.reached()));
     for (const auto& m : result.materials) {
       INFO(m.material.name);
       CHECK(m.force_loaded ==
@@ -142,7 +147,7 @@ TEST_CASE("bad parameters are refused before anything is computed or written") {
     CHECK(std::filesystem::is_empty(folder.path));
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  refuse([&](rve::Params& p) { p.packing.cov = nan; }, "cov");
+  refuse([&](rve::Params& p) { p.packing.cov = nan; }, "CoV of the radii");
   refuse([&](rve::Params& p) { p.packing.density = 1.5; }, "density");
   refuse([&](rve::Params& p) { p.coordination = nan; }, "coordination");
   refuse([&](rve::Params& p) { p.coordination = 0; }, "coordination");
