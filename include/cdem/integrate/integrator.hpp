@@ -42,7 +42,8 @@ concept GivesElasticEnergy = requires(const F& forces, const particles::SpatialF
 /// `forces.diagonal_block(i)` is the 6x6 block of the stiffness that couples particle i with itself.
 template <class F>
 concept GivesDiagonalBlock = requires(const F& forces, ParticleIndex i) {
-  { forces.diagonal_block(i) } -> std::convertible_to<Eigen::Matrix<double, 6, 6>>;
+  // same_as, since Eigen's matrices of all sizes convert into each other as far as the compiler can tell
+  { forces.diagonal_block(i) } -> std::same_as<Eigen::Matrix<double, 6, 6>>;
 };
 
 /// The internal forces of a body, as an integrator sees them. Models: bond::LinearForces.
