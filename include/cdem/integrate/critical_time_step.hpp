@@ -54,8 +54,8 @@ inline double largest_eigenvalue(const Matrix6& symmetric) {
 /// max lambda_i. omega_i = sqrt(lambda_i) is the frequency of particle i among neighbours that are held.
 /// Never far from the limit either: one particle alone is a trial motion, omega_max^2 >= max lambda_i, so that
 /// the limit 2 / largest_frequency() of a free body lies between the bound and sqrt(2) times it. Equal to the
-/// limit for a ring of equal springs moving in turn; 24 to 29 % below it in random networks of 216 particles joined by beams or
-/// springs (r_mu 0.1 to 1, contrasts to 100), measured by the unit test.
+/// limit for a ring of equal springs moving in turn; 24 to 29 % below it in random networks of 216 particles
+/// (beams of r_mu 0.1 to 1, springs, contrasts to 100), measured by the unit test.
 /// @deviation [L17] section 2.3 takes the minimum over bonds of a dt_crit it does not define; this one is
 /// over particles.
 /// @return      time_step is infinite where nothing is bonded
