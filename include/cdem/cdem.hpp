@@ -19,9 +19,13 @@
 #include <cdem/geometry/segment.hpp>
 #include <cdem/homogenize/running_average.hpp>
 #include <cdem/homogenize/tension_gauge.hpp>
+#include <cdem/homogenize/tension_recorder.hpp>
 #include <cdem/integrate/critical_time_step.hpp>
 #include <cdem/integrate/damping.hpp>
+#include <cdem/integrate/density_scaling.hpp>
 #include <cdem/integrate/integrator.hpp>
+#include <cdem/integrate/rayleigh_quotient.hpp>
+#include <cdem/integrate/static_multigrid.hpp>
 #include <cdem/integrate/velocity_verlet.hpp>
 #include <cdem/io/atomic_file.hpp>
 #include <cdem/io/bonds_vtu.hpp>
@@ -49,6 +53,8 @@
 #include <cdem/particles/particle_set.hpp>
 #include <cdem/particles/space_filling_order.hpp>
 #include <cdem/particles/spatial_field.hpp>
+#include <cdem/simulation/simulation.hpp>
+#include <cdem/simulation/specimen.hpp>
 #include <cdem/stress/closure.hpp>
 #include <cdem/stress/love_weber.hpp>
 #include <cdem/stress/statistics.hpp>
