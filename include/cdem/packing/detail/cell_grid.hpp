@@ -23,9 +23,8 @@ inline double nearest_integer(double x) {
 }
 
 /// Vector between two points of the unit cube brought to the nearest periodic image.
-inline void to_nearest_image(Vec3& d) {
-  for (int k = 0; k < 3; ++k)
-    d[k] -= nearest_integer(d[k]);
+inline Vec3 nearest_image(const Vec3& d) {
+  return {d[0] - nearest_integer(d[0]), d[1] - nearest_integer(d[1]), d[2] - nearest_integer(d[2])};
 }
 
 /// Cells of the unit cube, each a doubly linked list of spheres: a sphere comes and goes in constant time.

@@ -266,7 +266,7 @@ private:
     advance(b);
     Vec3 normal = b.centre - a.centre;
     if (periodic_)
-      to_nearest_image(normal);
+      normal = nearest_image(normal);
     normal.normalize();
     const double size = a.size + b.size;
     const double parting = size * growth_;
@@ -352,12 +352,14 @@ private:
     std::size_t count = 0;
     for (const ParticleIndex j : neighbours) {
       const Body& b = bodies_[j];
-      Vec3 d = b.centre + b.velocity * (now_ - b.time) - centre;
-      if (periodic_)
-        to_nearest_image(d);
+      const Vec3 w = b.velocity - a.velocity;
+      const Vec3 apart = b.centre + b.velocity * (now_ - b.time) - centre;
+      const Vec3 d = periodic_ ? nearest_image(apart) : apart;
       const double size = a.size + b.size;
-      const Approach approach(d, b.velocity - a.velocity, size * scale, size * growth_);
-      nearing_[count] = {approach, j};
+      // Written in place: a copy of values just stored one by one would have to wait for them.
+      nearing_[count].sphere = j;
+      Approach& approach = nearing_[count].approach;
+      approach = Approach(d, w, size * scale, size * growth_);
       count += static_cast<std::size_t>((approach.b < 0) | (approach.a < 0));
     }
     for (std::size_t k = 0; k < count; ++k) {

@@ -92,7 +92,7 @@ private:
     grid_.visit_near(shell.centre, shell.radius + largest_, [&](ParticleIndex other) {
       Vec3 d = shells_[other].centre - shell.centre;
       if (periodic_)
-        to_nearest_image(d);
+        d = nearest_image(d);
       const double reach = shells_[other].radius + shell.radius;
       if (d.squaredNorm() < reach * reach && other != sphere)
         take(other);

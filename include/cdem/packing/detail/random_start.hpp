@@ -59,7 +59,7 @@ inline std::vector<Vec3> add_sequentially(const std::vector<double>& radii, bool
       placed = grid.visit_near(centres[i], radii[i] + largest, [&](ParticleIndex j) {
         Vec3 d = centres[j] - centres[i];
         if (periodic)
-          to_nearest_image(d);
+          d = nearest_image(d);
         const double reach = radii[i] + radii[j];
         return d.squaredNorm() > reach * reach;
       });
