@@ -128,7 +128,7 @@ public:
     std::uint32_t group_size = 20;      ///< particles or groups to a group
     std::uint32_t coarsest_size = 60;   ///< groups that the sparse factor takes
     double weakest_tie = 0.05;          ///< see GroupGrower
-    double held_stiffness = 0.5;        ///< see group_graph()
+    double held_stiffness = 1;          ///< see group_graph()
     double shift = 1e-12;               ///< see CoarsestSolver
     CycleParameters cycle = {};
   };
