@@ -89,11 +89,11 @@ TEST_CASE("the number of materials, and what a rule makes of them, are checked")
 }
 
 TEST_CASE("a particle whose phase has no material is named") {
-  auto [particles, network] = body::row(3, Vec3::UnitX(), 1, 0.5);
-  particles.phase[2] = 1;
+  body::Body row = body::row(3, Vec3::UnitX(), 1, 0.5);
+  row.particles.phase[2] = 1;
   const bond::Beam<> law({.materials = {{1, 1}}});
-  CHECK(contains(body::message_of([&] { law.validate(particles); }),
+  CHECK(contains(body::message_of([&] { law.validate(row.particles); }),
                  "phase of particle 2 = 1 is not accepted: a phase with a material is expected, 1 given"));
-  CHECK(contains(body::message_of([&] { bond::LinearForces forces(law, particles, network); }),
+  CHECK(contains(body::message_of([&] { bond::LinearForces forces(law, row.particles, row.network); }),
                  "phase of particle 2 = 1"));
 }
