@@ -52,10 +52,11 @@ TEST_CASE("an oscillator follows the leapfrog's exact discrete solution") {
     bool held;
     int dof;
   };
-  for (const auto& [what, held, dof] :
-       {Case{"stretch, one end held", true, 0}, Case{"stretch, free", false, 0},
-        Case{"twist, one end held", true, 3}, Case{"twist, free", false, 3}}) {
-    CAPTURE(what);
+  for (const Case& oscillator : {Case{"stretch, one end held", true, 0}, Case{"stretch, free", false, 0},
+                                 Case{"twist, one end held", true, 3}, Case{"twist, free", false, 3}}) {
+    CAPTURE(oscillator.what);
+    const bool held = oscillator.held;
+    const int dof = oscillator.dof;
     const Body body = pair(held);
     const auto& k = body.forces.stiffness(0);
     const double stiffness = dof == 0 ? k.normal : k.torsion;
@@ -91,10 +92,11 @@ TEST_CASE("a damped oscillator meets the exact solution, at second order in the 
     std::string what;
     Damping damping;
   };
-  for (const auto& [what, damping] :
+  for (const Case& damped :
        {Case{"none", {}}, Case{"alpha", Damping::of_mode(0.1, omega)}, Case{"beta", {0, 0.2 / omega}},
         Case{"strong beta", {0, 1.0 / omega}}, Case{"both", Damping::between(0.2, 0.5 * omega, 3 * omega)}}) {
-    CAPTURE(what);
+    CAPTURE(damped.what);
+    const Damping damping = damped.damping;
     const double ratio = damping.ratio_at(omega);
     const double time = 8 / omega;
     double error[4]; // the largest on the way
