@@ -245,7 +245,8 @@ TEST_CASE("density scaling gives the step asked for and leaves statics alone") {
     const auto report = integrate::scale_density(test.forces, inertia, 3e-5, 0.5, scaling, test.pool);
     CHECK(0.5 * integrate::critical_time_step(test.forces, inertia).time_step ==
           doctest::Approx(3e-5).epsilon(1e-12));
-    CHECK(report.smallest_factor <= report.mass_factor * (1 + 1e-12)); // a mean, but for the rounding of the sums
+    CHECK(report.smallest_factor <=
+          report.mass_factor * (1 + 1e-12)); // a mean, but for the rounding of the sums
     CHECK(report.mass_factor <= report.largest_factor * (1 + 1e-12));
     if (scaling == integrate::DensityScaling::uniform)
       CHECK(report.smallest_factor == doctest::Approx(report.largest_factor).epsilon(1e-12));

@@ -50,7 +50,8 @@ std::string to_text(const Value& value) {
 /// Throws InvalidInput: "<name> = <value> is not accepted: <accepted>".
 template <class Value>
 [[noreturn]] void reject(std::string_view name, const Value& value, std::string_view accepted) {
-  throw InvalidInput(std::string(name) + " = " + to_text(value) + " is not accepted: " + std::string(accepted));
+  throw InvalidInput(std::string(name) + " = " + to_text(value) +
+                     " is not accepted: " + std::string(accepted));
 }
 
 /// Throws InvalidInput unless `condition`; see reject().
@@ -64,7 +65,8 @@ void expect(bool condition, std::string_view name, const Value& value, std::stri
 inline void expect_positive(double value, std::string_view name, std::string_view unit = "") {
   if (!(std::isfinite(value) && value > 0)) [[unlikely]]
     reject(name, value,
-           std::string("a finite number above 0") + (unit.empty() ? "" : " ") + std::string(unit) + " is expected");
+           std::string("a finite number above 0") + (unit.empty() ? "" : " ") + std::string(unit) +
+               " is expected");
 }
 
 /// Throws InvalidInput unless `value` is a finite number, zero or above.

@@ -34,7 +34,8 @@ public:
       threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     size_ = threads;
     const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    spins_ = threads <= processors ? 4000 : 0; // spinning threads that outnumber the processors starve each other
+    spins_ =
+        threads <= processors ? 4000 : 0; // spinning threads that outnumber the processors starve each other
     for (int t = 1; t < size_; ++t)
       workers_.emplace_back([this, t] { work(t); });
   }

@@ -21,7 +21,7 @@ public:
   /// Uniform in [0, 1): the 53 upper bits of one draw.
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
 
-  /// Uniform in [lower, upper).
+  /// Uniform in [lower, upper); rounding may give `upper` itself.
   double uniform(double lower, double upper) { return lower + (upper - lower) * uniform(); }
 
   /// Normal with mean 0 and standard deviation 1 (Box–Muller, one of the pair is dropped: two draws a call).

@@ -30,9 +30,13 @@ using PhaseIndex = std::uint8_t;
 enum class Axis : std::uint8_t { x = 0, y = 1, z = 2 };
 
 /// 0, 1 or 2 for x, y or z.
-constexpr int index_of(Axis axis) noexcept { return static_cast<int>(axis); }
+constexpr int index_of(Axis axis) noexcept {
+  return static_cast<int>(axis);
+}
 /// 'x', 'y' or 'z'.
-constexpr char name_of(Axis axis) noexcept { return static_cast<char>('x' + index_of(axis)); }
+constexpr char name_of(Axis axis) noexcept {
+  return static_cast<char>('x' + index_of(axis));
+}
 
 } // namespace cdem::core
 

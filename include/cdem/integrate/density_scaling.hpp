@@ -5,7 +5,9 @@
 
 #include <cdem/integrate/critical_time_step.hpp>
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace cdem::integrate {
@@ -43,6 +45,7 @@ DensityScalingReport scale_density(const Forces& forces, particles::Inertia& ine
   core::expect(safety > 0 && safety < 1, "safety D_t of the time step", safety,
                "a number in ]0, 1[ is expected");
   const std::size_t count = forces.particle_count();
+  inertia.validate(count);
   std::vector<double> eigenvalue(count);
   core::parallel_for(pool, count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)

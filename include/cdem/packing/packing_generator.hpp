@@ -22,7 +22,10 @@ struct Packing {
 
 /// Has `Parameters`, from which it is made; bad ones throw core::InvalidInput in the constructor.
 template <class G>
-concept HasParameters = requires { typename G::Parameters; } && std::constructible_from<G, typename G::Parameters>;
+concept HasParameters = requires {
+  typename G::Parameters;
+}
+&&std::constructible_from<G, typename G::Parameters>;
 
 /// Has `Report`, which says at least the density reached (the spheres' volume over the box's).
 template <class G>

@@ -56,8 +56,8 @@ struct ParticleSet {
     for (std::size_t i = 0; i < position.size(); ++i) {
       for (int k = 0; k < 3; ++k)
         if (!std::isfinite(position[i][k]))
-          core::reject(std::string("position ") + "xyz"[k] + " of particle " + std::to_string(i), position[i][k],
-                       "a finite number is expected");
+          core::reject(std::string("position ") + "xyz"[k] + " of particle " + std::to_string(i),
+                       position[i][k], "a finite number is expected");
       if (!(std::isfinite(radius[i]) && radius[i] > 0))
         core::reject("radius of particle " + std::to_string(i), radius[i],
                      "a finite number above 0 m is expected");
