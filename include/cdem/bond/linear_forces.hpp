@@ -125,8 +125,33 @@ public:
                 core::ThreadPool& pool) const {
     pool.for_each_block(block_count(), [&](std::size_t number) {
       const Block block = this->block(number);
-      sum_forces(block, displacement.data(), force.data() + block.begin);
+      std::fill(force.begin() + block.begin, force.begin() + block.end, particles::Spatial<>{});
+      add_forces(block, displacement.data(), force.data() + block.begin);
     });
+  }
+
+  /// Internal forces handed on block by block, while they are in the cache: what an explicit step needs of them.
+  ///
+  /// @param displacement  [particles] m, rad
+  /// @param zero          where the sum begins
+  /// @param use           Sum(begin, end, force): takes the forces [end - begin] (N, N m) of particles begin to
+  ///                      end; called once for each block, from several threads at once
+  /// @return              sum of what `use` returned, in block order: the same bits for any number of threads
+  /// @complexity          as evaluate(); one sum a block is allocated
+  template <class Sum, class Use>
+  Sum evaluate_blockwise(const particles::SpatialField<>& displacement, Sum zero, core::ThreadPool& pool,
+                         Use&& use) const {
+    std::vector<Sum> partial(block_count(), zero);
+    pool.for_each_block(block_count(), [&](std::size_t number) {
+      particles::Spatial<> force[block_size]; // zero
+      const Block block = this->block(number);
+      add_forces(block, displacement.data(), force);
+      partial[number] = use(std::size_t{block.begin}, std::size_t{block.end},
+                            static_cast<const particles::Spatial<>*>(force));
+    });
+    for (const Sum& sum : partial)
+      zero += sum;
+    return zero;
   }
 
   /// Elastic energy u.K u / 2, J. @complexity O(bonds)
@@ -275,13 +300,13 @@ private:
             .end = static_cast<ParticleIndex>(end)};
   }
 
-  static void sum_forces(const Block& block, const particles::Spatial<>* displacement,
+  static void add_forces(const Block& block, const particles::Spatial<>* displacement,
                          particles::Spatial<>* force) {
 #if defined(__x86_64__) && defined(__GNUC__)
     if (detail::has_avx2())
-      return detail::Avx2::sum_forces(block, displacement, force);
+      return detail::Avx2::add_forces(block, displacement, force);
 #endif
-    detail::sum_forces(block, displacement, force);
+    detail::add_forces(block, displacement, force);
   }
 
   BondDeformation deformation(BondIndex b, const particles::SpatialField<>& displacement) const {

@@ -7,8 +7,10 @@
 #include <cdem/integrate/damping.hpp>
 #include <cdem/integrate/integrator.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <concepts>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +20,15 @@ namespace cdem::integrate {
 /// An observer that looks at nothing and lets all steps pass.
 struct NoObserver {
   bool operator()(const Step&) const { return true; }
+};
+
+/// `forces.evaluate_blockwise(displacement, zero, pool, use)` hands the forces on block by block instead of writing
+/// a field, and returns the sum of what `use(begin, end, force)` gave. Not needed, but saves memory and time.
+template <class F>
+concept EvaluatesBlockwise = requires(const F& forces, const particles::SpatialField<>& displacement,
+                                      core::ThreadPool& pool,
+                                      double (*use)(std::size_t, std::size_t, const particles::Spatial<>*)) {
+  { forces.evaluate_blockwise(displacement, 0.0, pool, use) } -> std::same_as<double>;
 };
 
 /// Velocity Verlet for translations and rotations with Rayleigh damping, [L17] section 2.2.
@@ -61,7 +72,8 @@ public:
   /// @throws          core::InvalidInput for a motion that does not fit, is not finite, or goes on under other
   ///                  constraints than it began with; core::Interrupted;
   ///                  core::NotReached when the run blows up, with the step and the likely cause
-  /// @complexity      O(bonds) a step; two fields of the body's size (three with beta), allocated once
+  /// @complexity      O(bonds) a step; one field of the body's size, allocated once (one more for forces that
+  ///                  are not evaluated blockwise, two more with beta)
   template <InternalForces Forces, class Observer = NoObserver>
   Report run(const Problem<Forces>& problem, particles::Motion& motion, std::uint64_t steps,
              core::ThreadPool& pool, Observer&& observer = {}, const core::Monitor& monitor = {}) const {
@@ -71,6 +83,8 @@ public:
     Workspace work(problem, parameters_.damping);
     if (motion.acceleration.empty())
       begin(problem, motion, work, pool);
+    else
+      predict(problem, motion, work, pool);
     Report report;
     auto last_report = start;
     while (report.steps < steps) {
@@ -98,27 +112,28 @@ private:
   struct Workspace {
     template <class P>
     Workspace(const P& problem, const Damping& damping)
-        : force(problem.forces.particle_count()), reaction(problem.constraints.size()) {
+        : next(problem.forces.particle_count()), reaction(problem.constraints.size()) {
       if (damping.beta > 0) {
-        ahead.resize(force.size());
-        damped.resize(force.size());
+        ahead.resize(next.size());
+        damped.resize(next.size());
       }
     }
-    Field force;                  ///< internal forces at the displacement
+    Field next;                   ///< displacement of the coming step
+    Field force;                  ///< internal forces, where they are not evaluated blockwise
     Field ahead;                  ///< displacement + beta v*
     Field damped;                 ///< internal forces there
     std::vector<double> reaction; ///< [constraints]
   };
 
-  /// Kinetic energy and power lost to damping, summed in block order.
+  /// Kinetic energy and powers, summed in block order.
   struct Sums {
     double kinetic = 0;
-    double dissipated_power = 0;
-    double load_power = 0;
+    double dissipated_power = 0; ///< lost to damping
+    double external_power = 0;   ///< of loads and reactions
     Sums& operator+=(const Sums& other) {
       kinetic += other.kinetic;
       dissipated_power += other.dissipated_power;
-      load_power += other.load_power;
+      external_power += other.external_power;
       return *this;
     }
   };
@@ -167,17 +182,7 @@ private:
     const double dt = parameters_.time_step;
     motion.time += dt;
     ++motion.step;
-    core::parallel_for(pool, motion.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        for (int c = 0; c < 8; ++c) {
-          motion.velocity[i].component[c] += 0.5 * dt * motion.acceleration[i].component[c];
-          motion.displacement[i].component[c] += dt * motion.velocity[i].component[c];
-        }
-    });
-    for (const auto& constraint : problem.constraints.list()) {
-      motion.velocity[constraint.particle][constraint.dof] = constraint.rate;
-      motion.displacement[constraint.particle][constraint.dof] = constraint.rate * motion.time;
-    }
+    std::swap(motion.displacement, work.next);
     const particles::PathEnergy before = motion.energy;
     const double kinetic = accelerate(problem, motion, work, pool, 0.5 * dt);
     motion.energy.external_work += 0.5 * dt * (before.external_power + motion.energy.external_power);
@@ -188,68 +193,131 @@ private:
       blow_up(problem, motion, kinetic);
   }
 
-  /// Acceleration at the displacement; completes the velocity, which lacks `advance` seconds of it. Returns
-  /// the kinetic energy.
+  /// Acceleration and velocity at the displacement, and the displacement of the coming step, in one pass over the
+  /// bonds and particles. The velocity comes in `advance` seconds old, with the acceleration it had then: that is
+  /// how a step is split, half before the forces and half after. Returns the kinetic energy.
   template <class P>
   double accelerate(const P& problem, particles::Motion& motion, Workspace& work, core::ThreadPool& pool,
                     double advance) const {
-    const double alpha = parameters_.damping.alpha, beta = parameters_.damping.beta;
-    problem.forces.evaluate(motion.displacement, work.force, pool);
-    if (beta > 0) {
-      core::parallel_for(pool, motion.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          for (int c = 0; c < 8; ++c)
-            work.ahead[i].component[c] =
-                motion.displacement[i].component[c] +
-                beta * (motion.velocity[i].component[c] + advance * motion.acceleration[i].component[c]);
-      });
-      problem.forces.evaluate(work.ahead, work.damped, pool);
-    }
+    const double alpha = parameters_.damping.alpha, beta = parameters_.damping.beta,
+                 dt = parameters_.time_step;
+    if (beta > 0)
+      damp_stiffness(problem, motion, work, pool, advance);
     const double implicit = 1 / (1 + alpha * advance);
-    const auto sum = [&](std::size_t begin, std::size_t end) {
+    const auto use = [&](std::size_t begin, std::size_t end, const particles::Spatial<>* force) {
       Sums sums;
+      const auto load_of = [&](std::size_t i, int c) {
+        return problem.load ? (*problem.load)[i].component[c] : 0;
+      };
+      const auto viscous_of = [&](std::size_t i, int c) {
+        return beta > 0 ? work.damped[i].component[c] - force[i - begin].component[c] : 0;
+      };
       for (std::size_t i = begin; i < end; ++i) {
-        const double inverse[2] = {1 / problem.inertia.mass[i], 1 / problem.inertia.moment[i]};
         const double mass[2] = {problem.inertia.mass[i], problem.inertia.moment[i]};
+        const double inverse[2] = {1 / mass[0], 1 / mass[1]};
         for (int c = 0; c < 8; ++c) {
-          const double elastic = work.force[i].component[c];
-          const double viscous = beta > 0 ? work.damped[i].component[c] - elastic : 0;
-          const double load = problem.load ? (*problem.load)[i].component[c] : 0;
+          const double elastic = force[i - begin].component[c], viscous = viscous_of(i, c),
+                       load = load_of(i, c);
           const double free_acceleration = (elastic + viscous + load) * inverse[c / 4];
-          double& velocity = motion.velocity[i].component[c];
-          velocity = (velocity + advance * free_acceleration) * implicit;
-          motion.acceleration[i].component[c] = free_acceleration - alpha * velocity;
+          const double halfway =
+              motion.velocity[i].component[c] + advance * motion.acceleration[i].component[c];
+          const double velocity = (halfway + advance * free_acceleration) * implicit;
+          const double acceleration = free_acceleration - alpha * velocity;
+          motion.velocity[i].component[c] = velocity;
+          motion.acceleration[i].component[c] = acceleration;
+          work.next[i].component[c] =
+              motion.displacement[i].component[c] + dt * (velocity + 0.5 * dt * acceleration);
           const double momentum = mass[c / 4] * velocity;
           sums.kinetic += 0.5 * momentum * velocity;
           sums.dissipated_power += alpha * momentum * velocity - viscous * velocity;
-          sums.load_power += load * velocity;
+          sums.external_power += load * velocity;
         }
+      }
+      for (std::size_t k = first_constraint(problem, begin); k < problem.constraints.size(); ++k) {
+        const auto& constraint = problem.constraints.list()[k];
+        const std::size_t i = constraint.particle;
+        if (i >= end)
+          break;
+        const int c = constraint.dof < 3 ? constraint.dof : constraint.dof + 1;
+        const double mass = mass_of(problem.inertia, constraint);
+        const double elastic = force[i - begin].component[c], viscous = viscous_of(i, c),
+                     load = load_of(i, c);
+        // what the loop above booked for this degree of freedom as if it were free is replaced
+        const double wrong = motion.velocity[i].component[c], right = constraint.rate;
+        sums.kinetic += 0.5 * mass * (right * right - wrong * wrong);
+        sums.dissipated_power += alpha * mass * (right * right - wrong * wrong) - viscous * (right - wrong);
+        sums.external_power += load * (right - wrong);
+        motion.velocity[i].component[c] = right;
+        motion.acceleration[i].component[c] = 0;
+        work.next[i].component[c] = right * (motion.time + dt);
+        work.reaction[k] = alpha * mass * right - elastic - viscous - load;
+        sums.external_power += work.reaction[k] * right;
       }
       return sums;
     };
-    Sums sums = core::parallel_sum(pool, motion.size(), Sums{}, sum);
-    double reaction_power = 0;
-    for (std::size_t k = 0; k < work.reaction.size(); ++k) {
-      const auto& constraint = problem.constraints.list()[k];
-      const double mass = mass_of(problem.inertia, constraint);
-      double& velocity = motion.velocity[constraint.particle][constraint.dof];
-      double& acceleration = motion.acceleration[constraint.particle][constraint.dof];
-      const double elastic = work.force[constraint.particle][constraint.dof];
-      const double viscous = beta > 0 ? work.damped[constraint.particle][constraint.dof] - elastic : 0;
-      const double load = problem.load ? (*problem.load)[constraint.particle][constraint.dof] : 0;
-      // what the loop above booked for this degree of freedom as if it were free is replaced
-      const double wrong = velocity, right = constraint.rate;
-      sums.kinetic += 0.5 * mass * (right * right - wrong * wrong);
-      sums.dissipated_power += alpha * mass * (right * right - wrong * wrong) - viscous * (right - wrong);
-      sums.load_power += load * (right - wrong);
-      velocity = right;
-      acceleration = 0;
-      work.reaction[k] = alpha * mass * right - elastic - viscous - load;
-      reaction_power += work.reaction[k] * right;
-    }
-    motion.energy.external_power = reaction_power + sums.load_power;
+    const Sums sums = with_forces(problem.forces, motion.displacement, work.force, pool, use);
+    motion.energy.external_power = sums.external_power;
     motion.energy.dissipated_power = sums.dissipated_power;
     return sums.kinetic;
+  }
+
+  /// Sum of use(begin, end, force) over blocks of particles, in block order.
+  template <class Forces, class Use>
+  static Sums with_forces(const Forces& forces, const Field& displacement, Field& force,
+                          core::ThreadPool& pool, const Use& use) {
+    if constexpr (EvaluatesBlockwise<Forces>) {
+      return forces.evaluate_blockwise(displacement, Sums{}, pool, use);
+    } else {
+      force.resize(displacement.size());
+      forces.evaluate(displacement, force, pool);
+      return core::parallel_sum(pool, displacement.size(), Sums{}, [&](std::size_t begin, std::size_t end) {
+        return use(begin, end, force.data() + begin);
+      });
+    }
+  }
+
+  /// Forces at the displacement + beta v*, v* the velocity of the half step advanced to the whole one.
+  template <class P>
+  void damp_stiffness(const P& problem, const particles::Motion& motion, Workspace& work,
+                      core::ThreadPool& pool, double advance) const {
+    const double beta = parameters_.damping.beta;
+    core::parallel_for(pool, motion.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        for (int c = 0; c < 8; ++c) {
+          const double gain = advance * motion.acceleration[i].component[c];
+          work.ahead[i].component[c] =
+              motion.displacement[i].component[c] + beta * (motion.velocity[i].component[c] + gain + gain);
+        }
+    });
+    problem.forces.evaluate(work.ahead, work.damped, pool);
+  }
+
+  /// The displacement of the coming step of a motion that is resumed, as accelerate() left it.
+  template <class P>
+  void predict(const P& problem, const particles::Motion& motion, Workspace& work,
+               core::ThreadPool& pool) const {
+    const double dt = parameters_.time_step;
+    core::parallel_for(pool, motion.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        for (int c = 0; c < 8; ++c)
+          work.next[i].component[c] =
+              motion.displacement[i].component[c] +
+              dt * (motion.velocity[i].component[c] + 0.5 * dt * motion.acceleration[i].component[c]);
+    });
+    for (const auto& constraint : problem.constraints.list())
+      work.next[constraint.particle][constraint.dof] = constraint.rate * (motion.time + dt);
+  }
+
+  /// Number in the list of the first constraint on particle `begin` or a later one.
+  template <class P>
+  static std::size_t first_constraint(const P& problem, std::size_t begin) {
+    const auto& list = problem.constraints.list();
+    return static_cast<std::size_t>(
+        std::lower_bound(list.begin(), list.end(), begin,
+                         [](const particles::Constraint& constraint, std::size_t particle) {
+                           return constraint.particle < particle;
+                         }) -
+        list.begin());
   }
 
   static double mass_of(const particles::Inertia& inertia, const particles::Constraint& constraint) {

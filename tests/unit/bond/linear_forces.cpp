@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <limits>
 #include <numeric>
 
@@ -76,6 +77,34 @@ TEST_CASE("any number of threads gives the same bytes") {
     CHECK(body::same_bytes(evaluated(forces, motion, threads), serial));
   core::ThreadPool one(1), three(3);
   CHECK(forces.elastic_energy(motion, three) == forces.elastic_energy(motion, one));
+}
+
+TEST_CASE("forces handed on block by block are those of the field, each particle once, sums in block order") {
+  const Body& random = large_body();
+  const LinearForces forces(beam, random.particles, random.network);
+  const SpatialField motion = body::random_motion(random.particles.size(), 1, 24);
+  const SpatialField expected = evaluated(forces, motion);
+  double one_thread = 0;
+  for (const int threads : {1, 2, 3}) {
+    core::ThreadPool pool(threads);
+    SpatialField found(motion.size());
+    std::vector<int> visits(motion.size(), 0);
+    const double sum = forces.evaluate_blockwise(
+        motion, 0.0, pool, [&](std::size_t begin, std::size_t end, const particles::Spatial<>* force) {
+          double part = 0;
+          for (std::size_t i = begin; i < end; ++i) {
+            found[i] = force[i - begin];
+            part += force[i - begin].linear().norm();
+            ++visits[i];
+          }
+          return part;
+        });
+    CHECK(body::same_bytes(found, expected));
+    CHECK(std::count(visits.begin(), visits.end(), 1) == static_cast<std::ptrdiff_t>(visits.size()));
+    if (threads == 1)
+      one_thread = sum;
+    CHECK(sum == one_thread);
+  }
 }
 
 TEST_CASE("rigid motions give no force") {

@@ -33,7 +33,7 @@ struct alignas(8 * sizeof(Real)) BondRecord {
     const Vec3 d = 0.5 * geometry.length * geometry.direction;
     for (int k = 0; k < 3; ++k)
       half_branch[k] = static_cast<Real>(d[k]);
-    const double square = arm().squaredNorm();
+    const double square = 0.25 * geometry.length * geometry.length;
     tangential = static_cast<Real>(stiffness.tangential);
     stretch = static_cast<Real>((stiffness.normal - stiffness.tangential) / square);
     twist = static_cast<Real>((stiffness.torsion - stiffness.bending) / square);
@@ -93,16 +93,14 @@ struct BondBlock {
 /// Bonds ahead of the one computed whose second end is fetched from memory.
 inline constexpr BondIndex prefetch_distance = 16;
 
-/// Sums the forces on a block's particles. This version runs on any processor; the one of
+/// Adds the bonds' forces on a block's particles. This version runs on any processor; the one of
 /// bond_block_avx2.hpp does the same operations in the same order.
 ///
-/// @param force  [block] overwritten
+/// @param force  [block] N, N m, added to
 template <class Real>
-void sum_forces(const BondBlock<Real>& block, const particles::Spatial<>* displacement,
+void add_forces(const BondBlock<Real>& block, const particles::Spatial<>* displacement,
                 particles::Spatial<>* force) {
   const ParticleIndex size = block.end - block.begin;
-  for (ParticleIndex k = 0; k < size; ++k)
-    force[k] = {};
   const auto act_on_second = [](particles::Spatial<>& on_second, const BondAction& action) {
     on_second.linear() -= action.force;
     on_second.angular() += action.couple - action.moment;

@@ -82,14 +82,12 @@ struct Avx2 {
     store(on_second, {before.linear - action.force, before.angular + (action.couple - action.moment)});
   }
 
-  /// See detail::sum_forces().
+  /// See detail::add_forces().
   template <class Real>
-  [[gnu::target("avx2")]] static void sum_forces(const BondBlock<Real>& block,
+  [[gnu::target("avx2")]] static void add_forces(const BondBlock<Real>& block,
                                                  const particles::Spatial<>* displacement,
                                                  particles::Spatial<>* force) {
     const ParticleIndex size = block.end - block.begin;
-    for (ParticleIndex k = 0; k < size; ++k)
-      force[k] = {};
     particles::Spatial<> elsewhere; // takes what belongs to other blocks
     const BondIndex last = block.bonds_begin[block.end];
     for (ParticleIndex i = block.begin; i < block.end; ++i) {
