@@ -15,6 +15,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace cdem::integrate {
@@ -169,6 +170,19 @@ struct AnyForces {
   Eigen::Matrix<double, 6, 6> diagonal_block(ParticleIndex) const;
 };
 static_assert(InternalForces<AnyForces>);
+
+/// The least that linear forces are, whose single bonds are known; solvers of statics are tried on it.
+struct AnyLinearForces : AnyForces {
+  struct Stiffness {
+    double normal, tangential, torsion, bending;
+  };
+  std::size_t bond_count() const;
+  std::pair<ParticleIndex, ParticleIndex> ends(BondIndex) const;
+  Vec3 direction(BondIndex) const;
+  double length(BondIndex) const;
+  Stiffness stiffness(BondIndex) const;
+  std::span<const BondIndex> bonds_of(ParticleIndex) const;
+};
 } // namespace detail
 
 /// Made from its `Parameters`, accounts for itself in a `Report`.
@@ -186,14 +200,14 @@ concept AdvancesMotion = requires(const I& integrator, const Problem<detail::Any
   { integrator.run(problem, motion, steps, pool) } -> std::same_as<typename I::Report>;
 };
 
-/// `integrator.solve(problem, motion, pool)` finds the equilibrium at unit time.
+/// `integrator.solve(problem, motion, pool)` finds the equilibrium at unit time, at least of linear forces.
 template <class I>
-concept SolvesStatics = requires(const I& integrator, const Problem<detail::AnyForces>& problem,
+concept SolvesStatics = requires(const I& integrator, const Problem<detail::AnyLinearForces>& problem,
                                  particles::Motion& motion, core::ThreadPool& pool) {
   { integrator.solve(problem, motion, pool) } -> std::same_as<typename I::Report>;
 };
 
-/// A way from forces to displacements. Models: VelocityVerlet.
+/// A way from forces to displacements. Models: VelocityVerlet, StaticMultigrid.
 template <class I>
 concept Integrator = HasParametersAndReport<I> &&(AdvancesMotion<I> || SolvesStatics<I>);
 

@@ -447,4 +447,6 @@ private:
   bool has_free_channels_ = false; ///< some bond resists stretch, shear, twist and bend not all
 };
 
+static_assert(Integrator<StaticMultigrid>);
+
 } // namespace cdem::integrate
