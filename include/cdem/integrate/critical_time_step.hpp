@@ -39,8 +39,11 @@ Matrix6 scaled_block(const Forces& forces, const particles::Inertia& inertia, Pa
   return block;
 }
 
-inline double largest_eigenvalue(const Matrix6& symmetric) {
-  return Eigen::SelfAdjointEigenSolver<Matrix6>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[5];
+/// A template so that only programs that call it compile Eigen's solver, which takes seconds.
+template <class Matrix>
+double largest_eigenvalue(const Matrix& symmetric) {
+  return Eigen::SelfAdjointEigenSolver<Matrix>(symmetric, Eigen::EigenvaluesOnly)
+      .eigenvalues()[symmetric.rows() - 1];
 }
 
 } // namespace detail
