@@ -32,6 +32,11 @@ int main(int argc, char** argv) {
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Axis>{{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}}))
       ->default_str("x");
+  app.add_option("--method", params.method,
+                 "verlet: the paper's explicit steps; static: the equilibrium, by multigrid")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, rve::Method>{
+          {"verlet", rve::Method::verlet}, {"static", rve::Method::statics}}))
+      ->default_str("verlet");
   app.add_option("--damping", params.damping_ratio, "Damping ratio of the first axial vibration")
       ->capture_default_str();
   app.add_option("--scaling", params.scaling,

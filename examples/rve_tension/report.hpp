@@ -55,10 +55,16 @@ inline io::Results tabulate(const Params& params, const Result& result) {
                source});
     table.add({name + ".relative_modulus", "E_a", m.moduli.youngs_modulus / m.material.micro.youngs_modulus,
                "1", E / m.material.micro.youngs_modulus, source});
-    table.add({name + ".time_step", "dt", m.material.time_step, "s", m.material.time_step, source});
-    table.add({name + ".critical_time_step[density=real]", "dt_crit", m.critical.time_step, "s"});
-    table.add({name + ".mass_factor", "", m.scaling.mass_factor});
-    table.add({name + ".steps", "", static_cast<double>(m.motion.step)});
+    if (params.method == Method::verlet) {
+      table.add({name + ".time_step", "dt", m.material.time_step, "s", m.material.time_step, source});
+      table.add({name + ".critical_time_step[density=real]", "dt_crit", m.critical.time_step, "s"});
+      table.add({name + ".mass_factor", "", m.scaling.mass_factor});
+      table.add({name + ".steps", "", static_cast<double>(m.motion.step)});
+    } else {
+      table.add({name + ".solver.outer_iterations", "", static_cast<double>(m.outer_iterations)});
+      table.add({name + ".solver.relative_residual", "", m.residual});
+      table.add({name + ".solver.work", "K u", m.work});
+    }
     table.add({name + ".strain", "eps_L", m.strain});
     const auto component = stress::statistics(m.stress, params.axis, params.axis);
     const char axis = core::name_of(params.axis);
@@ -79,6 +85,19 @@ inline io::Results tabulate(const Params& params, const Result& result) {
   return table;
 }
 
+/// The curves of figure 5 and the energies.
+inline void write_curve(const MaterialResult& m, const std::filesystem::path& path) {
+  io::CsvWriter curve(path,
+                      {"step", "time_s", "youngs_modulus_pa", "youngs_modulus_average_pa", "poissons_ratio",
+                       "poissons_ratio_average", "reaction_fixed_n", "reaction_loaded_n", "kinetic_j",
+                       "elastic_j", "external_work_j", "dissipated_j"});
+  for (const auto& s : m.samples)
+    curve.row(static_cast<std::uint64_t>(s.step), s.time, s.youngs_modulus, s.youngs_modulus_average,
+              s.poissons_ratio, s.poissons_ratio_average, s.force_fixed, s.force_loaded, s.kinetic, s.elastic,
+              s.external_work, s.dissipated);
+  curve.commit();
+}
+
 /// Writes results.csv, the curves, the angles and the fields.
 inline void write(const Params& params, const Result& result, const io::OutputDirectory& out) {
   io::CsvWriter angles(out.file("angles.csv"), {"plane", "class", "angle_rad", "fraction"});
@@ -95,15 +114,10 @@ inline void write(const Params& params, const Result& result, const io::OutputDi
 
   for (const MaterialResult& m : result.materials) {
     const std::string& name = m.material.name;
-    io::CsvWriter curve(out.file(name + "_convergence.csv"),
-                        {"step", "time_s", "youngs_modulus_pa", "youngs_modulus_average_pa", "poissons_ratio",
-                         "poissons_ratio_average", "reaction_fixed_n", "reaction_loaded_n", "kinetic_j",
-                         "elastic_j", "external_work_j", "dissipated_j"});
-    for (const auto& s : m.samples)
-      curve.row(static_cast<std::uint64_t>(s.step), s.time, s.youngs_modulus, s.youngs_modulus_average,
-                s.poissons_ratio, s.poissons_ratio_average, s.force_fixed, s.force_loaded, s.kinetic,
-                s.elastic, s.external_work, s.dissipated);
-    curve.commit();
+    if (m.samples.empty()) // a static solution has no history
+      std::filesystem::remove(out.file(name + "_convergence.csv"));
+    else
+      write_curve(m, out.file(name + "_convergence.csv"));
 
     const std::string title = name + " in tension along " + core::name_of(params.axis);
     io::ParticleFields fields = io::fields_of(m.motion);

@@ -8,6 +8,7 @@
 #include <cdem/homogenize/tension_recorder.hpp>
 #include <cdem/integrate/density_scaling.hpp>
 #include <cdem/integrate/rayleigh_quotient.hpp>
+#include <cdem/integrate/static_multigrid.hpp>
 #include <cdem/integrate/velocity_verlet.hpp>
 #include <cdem/io/checkpoint.hpp>
 #include <cdem/io/packing_file.hpp>
@@ -42,11 +43,18 @@ inline std::vector<Material> paper_materials() {
           {"silica", {.youngs_modulus = 220.2e9, .radius_ratio = 0.722}, 2200, 5.21e-5, 65e9, 0.20}};
 }
 
+/// How the displacements are found; everything after is the same.
+enum class Method : std::uint8_t {
+  verlet,  ///< the paper's: explicit steps at constant velocity, averaged over time
+  statics, ///< the equilibrium itself, by multigrid
+};
+
 struct Params {
   packing::LubachevskyStillinger::Parameters packing = {};
-  double coordination = 6.2;   ///< Z, [L17] section 2.1
-  Axis axis = Axis::x;         ///< of the tension
-  double velocity = 1e-5;      ///< m/s, [L17] section 2.3
+  double coordination = 6.2; ///< Z, [L17] section 2.1
+  Axis axis = Axis::x;       ///< of the tension
+  double velocity = 1e-5;    ///< m/s, [L17] section 2.3; statics take it as m
+  Method method = Method::verlet;
   double safety = 0.5;         ///< D_t, [L17] section 2.3
   double damping_ratio = 0.01; ///< of the first axial vibration (not in the paper)
   integrate::DensityScaling scaling = integrate::DensityScaling::per_particle;
@@ -92,8 +100,10 @@ struct MaterialResult {
   integrate::CriticalTimeStep critical; ///< before density scaling
   integrate::DensityScalingReport scaling;
   integrate::EnergyLedger energy; ///< at the end
+  int outer_iterations = 0;       ///< of the static solver
+  double residual = 0;            ///< relative, of the static solver
+  double work = 0;                ///< of the static solver, in applications of K
   bool converged = false;
-  double seconds = 0;
 };
 
 struct Result {
@@ -237,63 +247,89 @@ make_packing(const Params& params, bool& loaded, const core::Monitor& monitor) {
   return packing;
 }
 
+/// Everything that a run of one material depends on: a checkpoint with the same text belongs to the same run.
+inline std::string describe(const Params& params) {
+  std::ostringstream text;
+  text.precision(17);
+  text << describe(params.packing) << "coordination = " << params.coordination
+       << "\naxis = " << core::name_of(params.axis) << "\nvelocity = " << params.velocity
+       << "\nsafety = " << params.safety << "\ndamping_ratio = " << params.damping_ratio
+       << "\nscaling = " << static_cast<int>(params.scaling) << "\ninterval = " << params.convergence.interval
+       << "\ntolerance = " << params.convergence.tolerance << '\n';
+  return text.str();
+}
+
+/// The paper's way: explicit steps until the averages have converged, with checkpoints.
+inline void march(const integrate::VelocityVerlet& verlet,
+                  const integrate::Problem<bond::LinearForces>& problem, const std::string& name,
+                  const Params& params, particles::Motion& motion, Recorder& recorder, core::ThreadPool& pool,
+                  const core::Monitor& monitor) {
+  const bool keeps = !params.checkpoints.empty();
+  const std::filesystem::path checkpoint = params.checkpoints / (name + ".checkpoint");
+  const std::string identity = describe(params);
+  if (params.resume && keeps && std::filesystem::exists(checkpoint))
+    load(checkpoint, identity, motion, recorder);
+  const core::Monitor shown([&](const core::Progress& progress) {
+    const double done = static_cast<double>(motion.step) / static_cast<double>(params.most_steps);
+    monitor.report({name, done, progress.detail + " of at most " + std::to_string(params.most_steps)});
+  });
+  try {
+    while (!recorder.converged() && motion.step < params.most_steps) {
+      // in portions, so that a checkpoint is never far behind
+      const auto portion = std::min(params.convergence.interval, params.most_steps - motion.step);
+      verlet.run(problem, motion, portion, pool, std::ref(recorder), shown);
+      if (keeps)
+        save(checkpoint, identity, motion, recorder);
+    }
+  } catch (const core::Interrupted&) {
+    if (!keeps)
+      throw;
+    save(checkpoint, identity, motion, recorder);
+    throw core::Interrupted("interrupted in " + name + " at step " + std::to_string(motion.step) +
+                            "; the same command with --resume goes on from there");
+  }
+}
+
 inline MaterialResult pull(const Material& material, const Params& params, const Result& shared,
                            core::ThreadPool& pool, const core::Monitor& monitor) {
   const simulation::Specimen& specimen = shared.specimen;
   const bond::LinearForces forces(bond::Beam<>({.materials = {material.micro}}), specimen.particles,
                                   specimen.network);
   particles::Inertia inertia = particles::solid_spheres(specimen.particles, std::vector{material.density});
-  MaterialResult result;
-  result.material = material;
-  result.critical = integrate::critical_time_step(forces, inertia);
-  result.scaling =
-      integrate::scale_density(forces, inertia, material.time_step, params.safety, params.scaling, pool);
-
   const integrate::Problem<bond::LinearForces> problem{forces, inertia, shared.setup.constraints};
-  const auto k = core::index_of(params.axis);
-  const double omega = integrate::first_axial_frequency(problem, specimen.particles, specimen.box.lower[k],
-                                                        specimen.box.upper[k], params.axis, pool);
-  const integrate::VelocityVerlet verlet(
-      {.time_step = material.time_step, .damping = integrate::Damping::of_mode(params.damping_ratio, omega)});
   Recorder recorder(specimen.particles, specimen.network, shared.setup, problem, pool,
                     {.steady_from = params.convergence.interval, .convergence = params.convergence});
   particles::Motion motion = particles::Motion::at_rest(specimen.particles.size());
+  MaterialResult result;
+  result.material = material;
 
-  const std::filesystem::path checkpoint = params.checkpoints / (material.name + ".checkpoint");
-  std::ostringstream identity;
-  identity.precision(17);
-  identity << describe(params.packing) << "coordination = " << params.coordination
-           << "\naxis = " << core::name_of(params.axis) << "\nvelocity = " << params.velocity
-           << "\nsafety = " << params.safety << "\ndamping_ratio = " << params.damping_ratio
-           << "\nscaling = " << static_cast<int>(params.scaling)
-           << "\ninterval = " << params.convergence.interval
-           << "\ntolerance = " << params.convergence.tolerance << '\n';
-  if (params.resume && !params.checkpoints.empty() && std::filesystem::exists(checkpoint))
-    load(checkpoint, identity.str(), motion, recorder);
-
-  try {
-    while (!recorder.converged() && motion.step < params.most_steps) {
-      // in portions, so that a checkpoint is never far behind
-      const std::uint64_t portion =
-          std::min<std::uint64_t>(params.convergence.interval, params.most_steps - motion.step);
-      const core::Monitor shown([&](const core::Progress& progress) {
-        const double done = static_cast<double>(motion.step) / static_cast<double>(params.most_steps);
-        monitor.report(
-            {material.name, done, progress.detail + " of at most " + std::to_string(params.most_steps)});
-      });
-      result.seconds += verlet.run(problem, motion, portion, pool, std::ref(recorder), shown).seconds;
-      if (!params.checkpoints.empty())
-        save(checkpoint, identity.str(), motion, recorder);
-    }
-  } catch (const core::Interrupted&) {
-    if (params.checkpoints.empty())
-      throw;
-    save(checkpoint, identity.str(), motion, recorder);
-    throw core::Interrupted("interrupted in " + material.name + " at step " + std::to_string(motion.step) +
-                            "; the same command with --resume goes on from there");
+  if (params.method == Method::verlet) {
+    result.critical = integrate::critical_time_step(forces, inertia);
+    result.scaling =
+        integrate::scale_density(forces, inertia, material.time_step, params.safety, params.scaling, pool);
+    const auto k = core::index_of(params.axis);
+    const double omega = integrate::first_axial_frequency(problem, specimen.particles, specimen.box.lower[k],
+                                                          specimen.box.upper[k], params.axis, pool);
+    const integrate::VelocityVerlet verlet(
+        {.time_step = material.time_step,
+         .damping = integrate::Damping::of_mode(params.damping_ratio, omega)});
+    march(verlet, problem, material.name, params, motion, recorder, pool, monitor);
+    result.converged = recorder.converged();
+  } else {
+    const core::Monitor shown([&](const core::Progress& progress) {
+      monitor.report({material.name, progress.fraction, progress.detail});
+    });
+    const auto report = integrate::StaticMultigrid().solve(problem, motion, pool, shown);
+    result.outer_iterations = report.iterations;
+    result.residual = report.relative_residual;
+    result.work = report.work;
+    result.converged = true; // solve() throws where it does not
+    const std::vector<double> reaction = integrate::static_reactions(problem, motion, pool);
+    for (std::size_t c = 0; c < reaction.size(); ++c) // the work of a slow pull is half of force times way
+      motion.energy.external_work += 0.5 * reaction[c] * problem.constraints.list()[c].rate;
+    recorder.watch_equilibrium({motion, reaction});
   }
 
-  result.converged = recorder.converged();
   result.moduli = recorder.moduli();
   result.samples = recorder.samples();
   result.strain = recorder.strain(motion);
