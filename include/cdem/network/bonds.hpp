@@ -184,8 +184,7 @@ inline BondNetwork assemble(const particles::ParticleSet& particles, const geome
 /// @tparam Search    how neighbours are found; it does not change the result
 /// @param particles  centres inside or outside the box; a periodic direction wraps them
 /// @param box        bonds cross its periodic faces, through the nearest image; D is the side of a cube, the
-/// cube
-///                   root of the volume of another box. Box::without_periodicity() gives a body cut out of a
+///                   cube root of the volume of another box. Box::without_periodicity() gives a body cut out of a
 ///                   packing.
 /// @param eps        dimensionless, finite; negative asks for overlap
 /// @param pool       the network is the same to the last bit for any number of threads
@@ -224,17 +223,14 @@ struct CoordinationResult {
 /// Bonds between the closest particles, as many as give the coordination number Z = 2 bonds / particles.
 ///
 /// The k = round(Z particles / 2) pairs with the smallest surface gaps are bonded, equal gaps by (first,
-/// second); eps = (k-th gap) / D                                                     [L17] section 2.1, Z
-/// = 6.2
+/// second); eps = (k-th gap) / D                                                  [L17] section 2.1, Z = 6.2
 /// @param coordination  Z, above 0
 /// @param pool          the network is the same to the last bit for any number of threads
 /// @throws              core::InvalidInput for particles or a box that are not valid, fewer than two
-/// particles, Z not
-///                      finite, not above 0, below that of a single bond, or above what the particles or the
+///                      particles, Z not finite, not above 0, below that of a single bond, or above what the particles or the
 ///                      periodic box allow (see bonds_within())
 /// @complexity          O(particles log particles + bonds), as bonds_within(), once for each doubling of the
-/// gap
-///                      above a twentieth of the mean diameter; a dense packing at Z = 6.2 needs none
+///                      gap above a twentieth of the mean diameter; a dense packing at Z = 6.2 needs none
 template <NeighbourSearch Search = KdTree>
 CoordinationResult bonds_at_coordination(const particles::ParticleSet& particles, const geometry::Box& box,
                                          double coordination, core::ThreadPool& pool) {

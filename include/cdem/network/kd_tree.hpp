@@ -90,8 +90,7 @@ public:
   /// The radius is enlarged by the rounding error of the coordinates, so that no pair is lost to it: the
   /// caller compares exactly what it must compare exactly.
   /// @param radius  m; nothing is visited if it is not above 0, nor is a periodic image farther than the next
-  /// box:
-  ///                below half of every periodic edge nothing is missed and no particle is visited twice
+  ///                box: below half of every periodic edge nothing is missed and no particle is visited twice
   template <class Visitor>
   void for_each_within(const Vec3& point, double radius, Visitor&& visit) const {
     if (!(radius > 0))

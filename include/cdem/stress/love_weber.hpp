@@ -28,8 +28,7 @@ enum class Sharing : std::uint8_t {
   /// To each that its branch crosses, in proportion to the length inside.
   /// @deviation [L17] counts a contact in the specimen that holds it; see by_midpoint.
   by_length,
-  /// To the one that holds the contact point, as in [L17] section 2.5. The contact point is the middle of the
-  /// gap
+  /// To the one that holds the contact point, as in [L17] section 2.5. The contact point is the middle of the gap
   /// between the two spheres: on the branch, at R_first + (|d| - R_first - R_second)/2 from the first centre.
   by_midpoint
 };
@@ -64,8 +63,7 @@ public:
   using Parameters = LoveWeberParameters;
 
   /// @throws core::InvalidInput for a tessellation without cells, of 2^32 - 1 cells or more, or a cell whose
-  /// volume is
-  ///         not a finite positive number
+  ///         volume is not a finite positive number
   explicit LoveWeber(Cells cells, Parameters parameters = {})
       : cells_(std::move(cells)), parameters_(parameters) {
     core::expect(cells_.cell_count() >= 1 && cells_.cell_count() < std::numeric_limits<std::uint32_t>::max(),
@@ -86,8 +84,7 @@ public:
   /// @param forces     [bonds] N, on the bond's first particle
   /// @return           [specimens] Pa, tension positive, not symmetrised
   /// @throws core::InvalidInput for a bad particle or bond, a number of forces other than the bonds', a force
-  /// that is
-  ///         not finite, and with Outside::refuse a centre or a part of a branch outside the specimens
+  ///         that is not finite, and with Outside::refuse a centre or a part of a branch outside the specimens
   /// @complexity       O(particles + pieces of branches); about 4 MB of working memory beside the result
   StressField estimate(const particles::ParticleSet& particles, const network::BondNetwork& network,
                        std::span<const Vec3> forces) const {

@@ -53,8 +53,7 @@ inline void expect_specimens(const StressField& field) {
 /// Statistics of quantity(stress), such as von_mises, over the specimens, empty ones included.
 ///
 /// @throws core::InvalidInput for a field without specimens, a volume that is not positive, or a quantity
-/// that is not
-///         finite; names the first such specimen
+///         that is not finite; names the first such specimen
 /// @complexity O(specimens), no allocation
 template <std::invocable<const Mat3&> Quantity>
 Statistics statistics(const StressField& field, Quantity&& quantity) {

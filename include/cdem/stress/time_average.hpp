@@ -25,8 +25,7 @@ public:
   /// @param scale   what the stresses are multiplied by, such as 1/strain; finite
   /// @param weight  above 0, such as the time the field stands for
   /// @throws core::InvalidInput for a scale or weight that is not accepted, a stress that is not finite
-  /// (nothing is
-  ///         added then), or other specimens than the first field's
+  ///         (nothing is added then), or other specimens than the first field's
   void add(const StressField& field, double scale = 1, double weight = 1) {
     core::expect_finite(scale, "scale of the stress");
     core::expect_positive(weight, "weight of the stress");
