@@ -32,16 +32,18 @@ concept LinearForcesOfBonds = InternalForces<F> && LinearBonds<F>;
 class StaticMultigrid {
 public:
   struct Parameters {
-    double relative_residual = 1e-8; ///< wanted: residual over that of the prescribed motion with all else at rest
+    double relative_residual =
+        1e-8; ///< wanted: residual over that of the prescribed motion with all else at rest
     int max_iterations = 1000;
-    int group_size = 20;             ///< particles to a group, 2 to 1000
-    int smoothing_steps = 2;         ///< Chebyshev steps before and after each coarse correction, 1 to 16
+    int group_size = 20;     ///< particles to a group, 2 to 1000
+    int smoothing_steps = 2; ///< Chebyshev steps before and after each coarse correction, 1 to 16
   };
 
   /// One level of the hierarchy, the particles first.
   struct LevelReport {
     std::size_t nodes = 0;
-    std::size_t links = 0;   ///< stored: those between two blocks count twice; on the coarsest, entries of the factor
+    std::size_t links =
+        0; ///< stored: those between two blocks count twice; on the coarsest, entries of the factor
     std::size_t bytes = 0;
     double applications = 0; ///< of the level's operator, smoothing included
   };
@@ -62,9 +64,10 @@ public:
     std::size_t rattlers = 0;           ///< free particles without a bond that resists: left at rest
     std::size_t floating_clusters = 0;  ///< connected parts that nothing holds or loads: left at rest
     std::size_t floating_particles = 0; ///< their particles
-    std::size_t loose_clusters = 0;     ///< parts that move under constraints but are not held in every rigid motion
-    /// Motions without energy that must exist by Maxwell's count: free unknowns less the bonds' independent resistances.
-    /// 0 for beams; a lower bound for springs.
+    std::size_t loose_clusters =
+        0; ///< parts that move under constraints but are not held in every rigid motion
+    /// Motions without energy that must exist: rotations that no bond resists, and by Maxwell's count the other free
+    /// unknowns less the bonds' independent resistances. 0 for beams; a lower bound for springs.
     std::size_t floppy_modes_at_least = 0;
   };
 
@@ -75,12 +78,13 @@ public:
                      parameters.relative_residual < 1,
                  "relative_residual of the static multigrid", parameters.relative_residual,
                  "a number between 0 and 1 is expected");
-    core::expect(parameters.max_iterations >= 1, "max_iterations of the static multigrid", parameters.max_iterations,
-                 "at least 1 is expected");
-    core::expect(parameters.group_size >= 2 && parameters.group_size <= 1000, "group_size of the static multigrid",
-                 parameters.group_size, "2 to 1000 is expected");
+    core::expect(parameters.max_iterations >= 1, "max_iterations of the static multigrid",
+                 parameters.max_iterations, "at least 1 is expected");
+    core::expect(parameters.group_size >= 2 && parameters.group_size <= 1000,
+                 "group_size of the static multigrid", parameters.group_size, "2 to 1000 is expected");
     core::expect(parameters.smoothing_steps >= 1 && parameters.smoothing_steps <= 16,
-                 "smoothing_steps of the static multigrid", parameters.smoothing_steps, "1 to 16 is expected");
+                 "smoothing_steps of the static multigrid", parameters.smoothing_steps,
+                 "1 to 16 is expected");
   }
 
   const Parameters& parameters() const noexcept { return parameters_; }
@@ -113,15 +117,16 @@ private:
 template <class Forces>
 class StaticMultigrid::Solve {
 public:
-  Solve(const Parameters& parameters, const Problem<Forces>& problem, particles::Motion& motion, core::ThreadPool& pool,
-        const core::Monitor& monitor)
+  Solve(const Parameters& parameters, const Problem<Forces>& problem, particles::Motion& motion,
+        core::ThreadPool& pool, const core::Monitor& monitor)
       : parameters_(parameters), problem_(problem), motion_(motion), pool_(pool), monitor_(monitor) {}
 
   Report run() {
     const auto start = Clock::now();
     problem_.validate();
-    core::expect(motion_.size() == problem_.forces.particle_count(), "number of displacements", motion_.size(),
-                 "the number of particles, " + std::to_string(problem_.forces.particle_count()) + ", is expected");
+    core::expect(
+        motion_.size() == problem_.forces.particle_count(), "number of displacements", motion_.size(),
+        "the number of particles, " + std::to_string(problem_.forces.particle_count()) + ", is expected");
     monitor_.report({"static multigrid", 0, "set-up"});
     find_units();
     support_ = detail::find_support(problem_, units_.length);
@@ -145,9 +150,11 @@ public:
     detail::Hierarchy::Parameters parameters;
     parameters.group_size = static_cast<std::uint32_t>(parameters_.group_size);
     parameters.cycle.smoothing_steps = parameters_.smoothing_steps;
-    if (report_.floppy_modes_at_least > 0 || support_.loose_clusters > 0 || !support_.drifting.empty() || has_free_channels_)
+    if (report_.floppy_modes_at_least > 0 || support_.loose_clusters > 0 || !support_.drifting.empty() ||
+        has_free_channels_)
       parameters.shift = 1e-6;
-    detail::Hierarchy hierarchy(detail::BondGraph<Forces>(problem_.forces, support_.held, units_), parameters, pool_);
+    detail::Hierarchy hierarchy(detail::BondGraph<Forces>(problem_.forces, support_.held, units_), parameters,
+                                pool_);
     report_.setup_seconds = seconds_since(start);
 
     const auto solve_start = Clock::now();
@@ -191,25 +198,32 @@ private:
       const auto block = problem_.forces.diagonal_block(i);
       for (int d = 0; d < 6; ++d)
         core::expect(load[d] == 0 || support_.held[i] >> d & 1 || block(d, d) > 0,
-                     (d < 3 ? "force on particle " : "moment on particle ") + std::to_string(i) + " along " + "xyz"[d % 3],
+                     (d < 3 ? "force on particle " : "moment on particle ") + std::to_string(i) + " along " +
+                         "xyz"[d % 3],
                      load[d], "no bond of the particle resists it: 0 is expected");
     }
   }
 
   void count_floppy_modes() {
-    std::size_t unknowns = 0, resistances = 0;
-    for (const detail::HeldMask held : support_.held)
-      for (int d = 0; d < 6; ++d)
-        unknowns += !(held >> d & 1);
+    std::vector<bool> turns_freely(support_.held.size(), true);
+    std::size_t resistances = 0;
     for (BondIndex b = 0; b < problem_.forces.bond_count(); ++b) {
       const auto& k = problem_.forces.stiffness(b);
       const auto [i, j] = problem_.forces.ends(b);
+      if (k.tangential > 0 || k.torsion > 0 || k.bending > 0)
+        turns_freely[i] = turns_freely[j] = false;
       if (support_.held[i] != detail::all_held || support_.held[j] != detail::all_held)
         resistances += (k.normal > 0 ? 1U : 0U) + (k.tangential > 0 ? 2U : 0U) + (k.torsion > 0 ? 1U : 0U) +
                        (k.bending > 0 ? 2U : 0U);
-      has_free_channels_ |= detail::is_stiff(k) && !(k.normal > 0 && k.tangential > 0 && k.torsion > 0 && k.bending > 0);
+      has_free_channels_ |=
+          detail::is_stiff(k) && !(k.normal > 0 && k.tangential > 0 && k.torsion > 0 && k.bending > 0);
     }
-    report_.floppy_modes_at_least = unknowns > resistances ? unknowns - resistances : 0;
+    std::size_t unresisted = 0, unknowns = 0;
+    for (std::size_t i = 0; i < support_.held.size(); ++i)
+      for (int d = 0; d < 6; ++d)
+        if (!(support_.held[i] >> d & 1))
+          ++(d >= 3 && turns_freely[i] ? unresisted : unknowns);
+    report_.floppy_modes_at_least = unresisted + (unknowns > resistances ? unknowns - resistances : 0);
   }
 
   /// Puts the prescribed values into the displacement; returns the norm of the residual with all else at zero, and leaves
@@ -243,15 +257,18 @@ private:
   double find_residual(const particles::SpatialField<>& displacement) {
     problem_.forces.evaluate(displacement, residual_, pool_);
     applications_ += 1;
-    return std::sqrt(core::parallel_sum(pool_, residual_.size(), 0.0, [&](std::size_t begin, std::size_t end) {
-      double sum = 0;
-      for (std::size_t i = begin; i < end; ++i) {
-        for (int d = 0; d < 6; ++d)
-          residual_[i][d] = support_.held[i] >> d & 1 ? 0 : residual_[i][d] + (problem_.load ? (*problem_.load)[i][d] : 0);
-        sum += squared(residual_[i]);
-      }
-      return sum;
-    }));
+    return std::sqrt(
+        core::parallel_sum(pool_, residual_.size(), 0.0, [&](std::size_t begin, std::size_t end) {
+          double sum = 0;
+          for (std::size_t i = begin; i < end; ++i) {
+            for (int d = 0; d < 6; ++d)
+              residual_[i][d] = support_.held[i] >> d & 1
+                                    ? 0
+                                    : residual_[i][d] + (problem_.load ? (*problem_.load)[i][d] : 0);
+            sum += squared(residual_[i]);
+          }
+          return sum;
+        }));
   }
 
   /// Force squared plus moment over the mean length of a bond squared, N^2.
@@ -307,12 +324,13 @@ private:
   }
 
   double norm_of_residual() {
-    return std::sqrt(core::parallel_sum(pool_, residual_.size(), 0.0, [&](std::size_t begin, std::size_t end) {
-      double sum = 0;
-      for (std::size_t i = begin; i < end; ++i)
-        sum += squared(residual_[i]);
-      return sum;
-    }));
+    return std::sqrt(
+        core::parallel_sum(pool_, residual_.size(), 0.0, [&](std::size_t begin, std::size_t end) {
+          double sum = 0;
+          for (std::size_t i = begin; i < end; ++i)
+            sum += squared(residual_[i]);
+          return sum;
+        }));
   }
 
   /// The residual over `scale` in the multigrid's units, in single precision.
@@ -345,15 +363,16 @@ private:
       z.angular() = to_angular * hierarchy.result()[k].angular().template cast<double>();
       return z;
     };
-    const Sums sums = core::parallel_sum(pool_, order.size(), Sums{}, [&](std::size_t begin, std::size_t end) {
-      Sums sum;
-      for (std::size_t k = begin; k < end; ++k) {
-        const particles::Spatial<> z = preconditioned(k);
-        sum.residual += inner(z, residual_[order[k]]);
-        sum.image -= inner(z, image_[order[k]]);
-      }
-      return sum;
-    });
+    const Sums sums =
+        core::parallel_sum(pool_, order.size(), Sums{}, [&](std::size_t begin, std::size_t end) {
+          Sums sum;
+          for (std::size_t k = begin; k < end; ++k) {
+            const particles::Spatial<> z = preconditioned(k);
+            sum.residual += inner(z, residual_[order[k]]);
+            sum.image -= inner(z, image_[order[k]]);
+          }
+          return sum;
+        });
     const double beta = curvature > 0 ? -sums.image / curvature : 0;
     core::parallel_for(pool_, order.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
@@ -404,18 +423,19 @@ private:
     const double start = report_.history.front() * reference;
     const double fraction = start > wanted ? std::log(start / norm) / std::log(start / wanted) : 1;
     monitor_.report({"static multigrid", std::clamp(fraction, 0.0, 1.0),
-                     monitor_.listens() ? "iteration " + std::to_string(report_.iterations) + ", relative residual " +
-                                              core::to_text(norm / reference)
+                     monitor_.listens() ? "iteration " + std::to_string(report_.iterations) +
+                                              ", relative residual " + core::to_text(norm / reference)
                                         : std::string()});
   }
 
   [[noreturn]] void fail(double relative_residual) const {
-    throw core::NotReached("static multigrid: relative residual " + core::to_text(relative_residual) + " after " +
-                           std::to_string(report_.iterations) + " iterations, " +
+    throw core::NotReached("static multigrid: relative residual " + core::to_text(relative_residual) +
+                           " after " + std::to_string(report_.iterations) + " iterations, " +
                            core::to_text(parameters_.relative_residual) + " was asked for" +
-                           (has_free_channels_ ? "; the network has bonds that resist only some motions: does a load "
-                                                 "push on a motion without stiffness?"
-                                               : ""));
+                           (has_free_channels_
+                                ? "; the network has bonds that resist only some motions: does a load "
+                                  "push on a motion without stiffness?"
+                                : ""));
   }
 
   void account(const detail::Hierarchy& hierarchy) {
@@ -442,7 +462,8 @@ private:
   Report report_;
   detail::Units units_;
   detail::Support support_;
-  particles::SpatialField<> residual_, direction_, image_; ///< [particles]; image: internal forces of the direction
+  particles::SpatialField<> residual_, direction_,
+      image_; ///< [particles]; image: internal forces of the direction
   double applications_ = 0;
   bool has_free_channels_ = false; ///< some bond resists stretch, shear, twist and bend not all
 };

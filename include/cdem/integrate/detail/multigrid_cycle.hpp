@@ -113,8 +113,9 @@ void add_group_motion(Level<Link>& level, const Field& group_x, core::ThreadPool
 
 /// What the cycle may be told.
 struct CycleParameters {
-  int smoothing_steps = 2;     ///< Chebyshev steps before and after the coarse correction
-  double inner_tolerance = 0.25; ///< an inner iteration that cut the residual so far is not followed by a second
+  int smoothing_steps = 2; ///< Chebyshev steps before and after the coarse correction
+  double inner_tolerance =
+      0.25; ///< an inner iteration that cut the residual so far is not followed by a second
 };
 
 /// The hierarchy and its cycle: an approximate inverse of the stiffness over the free degrees of freedom.
@@ -125,11 +126,11 @@ struct CycleParameters {
 class Hierarchy {
 public:
   struct Parameters {
-    std::uint32_t group_size = 20;      ///< particles or groups to a group
-    std::uint32_t coarsest_size = 60;   ///< groups that the sparse factor takes
-    double weakest_tie = 0.05;          ///< see GroupGrower
-    double held_stiffness = 1;          ///< see group_graph()
-    double shift = 1e-12;               ///< see CoarsestSolver
+    std::uint32_t group_size = 20;    ///< particles or groups to a group
+    std::uint32_t coarsest_size = 60; ///< groups that the sparse factor takes
+    double weakest_tie = 0.05;        ///< see GroupGrower
+    double held_stiffness = 1;        ///< see group_graph()
+    double shift = 1e-12;             ///< see CoarsestSolver
     CycleParameters cycle = {};
   };
 
@@ -165,8 +166,8 @@ public:
     particles_.held.resize(order_.size());
     for (std::size_t k = 0; k < order_.size(); ++k)
       particles_.held[k] = bonds.held(order_[k]);
-    const std::size_t coarsest_nodes = levels_.empty() ? particles_.group_begin.size() - 1
-                                                       : levels_.back().level.group_begin.size() - 1;
+    const std::size_t coarsest_nodes =
+        levels_.empty() ? particles_.group_begin.size() - 1 : levels_.back().level.group_begin.size() - 1;
     coarsest_rhs_.resize(coarsest_nodes);
     coarsest_x_.resize(coarsest_nodes);
   }
@@ -183,13 +184,18 @@ public:
 
   std::size_t level_count() const { return levels_.size() + 2; }
   const Level<BondLink>& particle_level() const { return particles_; }
-  struct Size { std::size_t nodes, links, bytes; double applications; };
+  struct Size {
+    std::size_t nodes, links, bytes;
+    double applications;
+  };
   /// Nodes, links, memory and operator applications so far of each level, the coarsest last.
   std::vector<Size> sizes() const {
-    std::vector<Size> all{{particles_.size(), particles_.network.link.size(), particles_.bytes(), applications_}};
+    std::vector<Size> all{
+        {particles_.size(), particles_.network.link.size(), particles_.bytes(), applications_}};
     for (const auto& group_level : levels_)
       all.push_back({group_level.level.size(), group_level.level.network.link.size(),
-                     group_level.level.bytes() + 3 * group_level.search.size() * sizeof(Field::value_type), group_level.applications});
+                     group_level.level.bytes() + 3 * group_level.search.size() * sizeof(Field::value_type),
+                     group_level.applications});
     all.push_back({coarsest_x_.size(), coarsest_.entries(), coarsest_.entries() * 12, 0});
     return all;
   }
@@ -245,18 +251,20 @@ private:
     }
     cycle(level, index + 1, pool);
     apply(group_level, level.x, group_level.image2, pool);
-    const double coupling = dot(level.x, group_level.image, pool), energy2 = dot(level.x, group_level.image2, pool),
-                 work2 = dot(level.x, level.rhs, pool), rest = energy2 - coupling * coupling / energy;
+    const double coupling = dot(level.x, group_level.image, pool),
+                 energy2 = dot(level.x, group_level.image2, pool), work2 = dot(level.x, level.rhs, pool),
+                 rest = energy2 - coupling * coupling / energy;
     const double step2 = rest > 0 ? work2 / rest : 0;
     combine(level.x, static_cast<float>(step2), level.x,
             static_cast<float>(work / energy - coupling / energy * step2), group_level.search, pool);
   }
 
   static void apply(GroupLevel& group_level, const Field& x, Field& image, core::ThreadPool& pool) {
-    group_level.level.network.for_each_block(x, pool, [&](std::size_t, NodeIndex begin, NodeIndex end, auto&& force) {
-      for (NodeIndex node = begin; node < end; ++node)
-        (-1.0F * force(node)).clean().store(image[node].component);
-    });
+    group_level.level.network.for_each_block(x, pool,
+                                             [&](std::size_t, NodeIndex begin, NodeIndex end, auto&& force) {
+                                               for (NodeIndex node = begin; node < end; ++node)
+                                                 (-1.0F * force(node)).clean().store(image[node].component);
+                                             });
     group_level.applications += 1;
   }
 
@@ -272,7 +280,8 @@ private:
   }
 
   /// result = s a + t b
-  static void combine(Field& result, float s, const Field& a, float t, const Field& b, core::ThreadPool& pool) {
+  static void combine(Field& result, float s, const Field& a, float t, const Field& b,
+                      core::ThreadPool& pool) {
     core::parallel_for(pool, result.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t node = begin; node < end; ++node) {
         Twist sum = s * Twist::load(a[node].component);

@@ -93,7 +93,7 @@ public:
   using Link = GroupLink;
   struct Edge {
     std::uint32_t first, second;
-    Vec3 branch; ///< from the centre of `first` to that of `second`
+    Vec3 branch;       ///< from the centre of `first` to that of `second`
     Matrix6 stiffness; ///< at the middle of the branch
   };
 
@@ -164,25 +164,33 @@ Matrix6 diagonal_stiffness(const Graph& graph, std::uint32_t node) {
   return sum;
 }
 
-/// Inverse of a node's stiffness over its free degrees of freedom; zero over the held ones, and over motions
-/// that meet no stiffness.
+/// Mean stiffness of a node against translations (first) and against rotations (second).
+inline std::pair<double, double> mean_stiffness(const Matrix6& stiffness) {
+  return {stiffness.topLeftCorner<3, 3>().trace() / 3, stiffness.bottomRightCorner<3, 3>().trace() / 3};
+}
+
+/// A stiffness below this part of a node's largest is rounding: the motion meets none.
+inline constexpr double negligible = 1e-14;
+
+/// Inverse of a node's stiffness over its free degrees of freedom; zero over the held ones, and over motions that
+/// meet no stiffness: least such motion, with rotations and translations each measured by their mean stiffness.
 inline Matrix6 inverse_of(Matrix6 stiffness, HeldMask held) {
+  const double least = negligible * stiffness.diagonal().maxCoeff();
   for (int d = 0; d < 6; ++d)
     if (held >> d & 1) {
       stiffness.row(d).setZero();
       stiffness.col(d).setZero();
     }
-  const Vector6 scale = stiffness.diagonal().unaryExpr([](double k) { return k > 0 ? 1 / std::sqrt(k) : 0; });
+  const auto [translation, rotation] = mean_stiffness(stiffness);
+  const auto scale_of = [least](double mean) { return mean > least ? 1 / std::sqrt(mean) : 0; };
+  Vector6 scale;
+  scale << Vec3::Constant(scale_of(translation)), Vec3::Constant(scale_of(rotation));
   const Matrix6 scaled = scale.asDiagonal() * stiffness * scale.asDiagonal();
+  const Eigen::LLT<Matrix6> factor(scaled);
   Matrix6 inverse;
-  bool regular = (scale.array() > 0).all();
-  if (regular) {
-    const Eigen::LLT<Matrix6> factor(scaled);
-    regular = factor.info() == Eigen::Success && factor.matrixLLT().diagonal().minCoeff() > 1e-5;
-    if (regular)
-      inverse = factor.solve(Matrix6::Identity());
-  }
-  if (!regular) {
+  if (factor.info() == Eigen::Success && factor.matrixLLT().diagonal().minCoeff() > 1e-5) {
+    inverse = factor.solve(Matrix6::Identity());
+  } else {
     const Eigen::SelfAdjointEigenSolver<Matrix6> modes(scaled);
     const Vector6 inverted = modes.eigenvalues().unaryExpr([](double k) { return k > 1e-10 ? 1 / k : 0; });
     inverse = modes.eigenvectors() * inverted.asDiagonal() * modes.eigenvectors().transpose();
@@ -199,7 +207,8 @@ inline Matrix6 inverse_of(Matrix6 stiffness, HeldMask held) {
 ///
 /// @complexity O(links)
 template <class Graph>
-GroupGraph group_graph(const Graph& graph, const Groups& groups, double held_stiffness, core::ThreadPool& pool) {
+GroupGraph group_graph(const Graph& graph, const Groups& groups, double held_stiffness,
+                       core::ThreadPool& pool) {
   std::vector<std::uint32_t> begin(groups.count + 1, 0), members;
   for (const std::uint32_t group : groups.group_of)
     if (group != none)
@@ -257,15 +266,17 @@ GroupGraph group_graph(const Graph& graph, const Groups& groups, double held_sti
           if (other == group) { // not strained, unless it closes on the group through a periodic face
             if (between.squaredNorm() > 1e-6 * way.squaredNorm()) {
               const Mat3 lever = cross_matrix(between);
-              ground.bottomRightCorner<3, 3>() +=
-                  0.5 * lever.transpose() * graph.stiffness(link).template topLeftCorner<3, 3>() * lever; // met twice
+              ground.bottomRightCorner<3, 3>() += 0.5 * lever.transpose() *
+                                                  graph.stiffness(link).template topLeftCorner<3, 3>() *
+                                                  lever; // met twice
               grounded = true;
             }
             return;
           }
           auto place = part.edges.begin() + static_cast<std::ptrdiff_t>(first_edge);
-          while (place != part.edges.end() &&
-                 !(place->second == other && (place->branch - between).squaredNorm() < 1e-6 * way.squaredNorm()))
+          while (
+              place != part.edges.end() &&
+              !(place->second == other && (place->branch - between).squaredNorm() < 1e-6 * way.squaredNorm()))
             ++place;
           if (place == part.edges.end())
             place = part.edges.insert(place, {group, other, between, Matrix6::Zero()});

@@ -40,7 +40,8 @@ public:
     groups_.group_of.assign(graph.size(), none);
     groups_.arm.assign(graph.size(), Vec3::Zero());
     for (std::uint32_t node = 0; node < graph.size(); ++node)
-      graph.for_each_link(node, [&](auto link, std::uint32_t, const auto&) { total_weight_[node] += graph.weight(link); });
+      graph.for_each_link(
+          node, [&](auto link, std::uint32_t, const auto&) { total_weight_[node] += graph.weight(link); });
   }
 
   Groups grow() {
@@ -117,7 +118,8 @@ private:
           return;
         const double weight = graph_.weight(link);
         const std::uint32_t group = groups_.group_of[other];
-        auto place = std::find_if(neighbours.begin(), neighbours.end(), [&](const Neighbour& n) { return n.group == group; });
+        auto place = std::find_if(neighbours.begin(), neighbours.end(),
+                                  [&](const Neighbour& n) { return n.group == group; });
         if (place == neighbours.end())
           place = neighbours.insert(neighbours.end(), {group, 0, 0, Vec3::Zero()});
         place->tie += weight;

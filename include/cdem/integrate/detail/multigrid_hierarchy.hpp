@@ -19,11 +19,11 @@ template <class LinkType>
 struct Level {
   using Link = LinkType;
   LinkedNodes<Link> network;
-  std::vector<float> inverse_diagonal;  ///< [nodes x 36 + 1] of each node's 6x6 block
-  std::vector<HeldMask> held;           ///< [nodes] on the level of the particles, else empty
-  std::vector<NodeIndex> group_begin;   ///< [groups + 1] first node of each group; empty on the coarsest level
-  std::vector<float> arm;               ///< [nodes x 4] from the group's centre, last of each zero
-  std::vector<NodeIndex> block_group;   ///< [blocks + 1] first group of each block of the network
+  std::vector<float> inverse_diagonal; ///< [nodes x 36 + 1] of each node's 6x6 block
+  std::vector<HeldMask> held;          ///< [nodes] on the level of the particles, else empty
+  std::vector<NodeIndex> group_begin;  ///< [groups + 1] first node of each group; empty on the coarsest level
+  std::vector<float> arm;              ///< [nodes x 4] from the group's centre, last of each zero
+  std::vector<NodeIndex> block_group;  ///< [blocks + 1] first group of each block of the network
 
   Field rhs, x, previous; ///< [nodes + 1], the last one the ground
   NodeIndex size() const { return network.size(); }
@@ -34,14 +34,16 @@ struct Level {
   }
   std::size_t bytes() const {
     return network.bytes() + inverse_diagonal.size() * sizeof(float) + held.size() +
-           group_begin.size() * sizeof(NodeIndex) + arm.size() * sizeof(float) + 3 * rhs.size() * sizeof(rhs[0]);
+           group_begin.size() * sizeof(NodeIndex) + arm.size() * sizeof(float) +
+           3 * rhs.size() * sizeof(rhs[0]);
   }
 };
 
 /// Old number of each node in the new order: members of a group together, groups in their own new order.
 ///
 /// @param group_position  [groups] where each group stands in the next level's order; empty where nodes keep theirs
-inline std::vector<std::uint32_t> order_by_group(const Groups& groups, const std::vector<std::uint32_t>& group_position) {
+inline std::vector<std::uint32_t> order_by_group(const Groups& groups,
+                                                 const std::vector<std::uint32_t>& group_position) {
   std::vector<std::uint32_t> next(groups.count + 1, 0);
   for (const std::uint32_t group : groups.group_of)
     if (group != none)
@@ -94,8 +96,9 @@ void cut_into_blocks(Level<Link>& level, const Groups* groups, const std::vector
 /// @param groups  of the level's nodes; null on the coarsest level
 /// @param order   [nodes] old number of each node
 template <class Graph>
-Level<typename Graph::Link> make_level(const Graph& graph, const Groups* groups, const std::vector<std::uint32_t>& order,
-                                       NodeIndex nodes_per_block, core::ThreadPool& pool) {
+Level<typename Graph::Link> make_level(const Graph& graph, const Groups* groups,
+                                       const std::vector<std::uint32_t>& order, NodeIndex nodes_per_block,
+                                       core::ThreadPool& pool) {
   Level<typename Graph::Link> level;
   cut_into_blocks(level, groups, order, nodes_per_block);
   auto& network = level.network;
@@ -163,16 +166,22 @@ public:
       for (int c = 0; c < 6; ++c)
         for (int r = 0; r < 6; ++r)
           if (block(r, c) != 0)
-            entries.emplace_back(static_cast<int>(6 * row) + r, static_cast<int>(6 * column) + c, block(r, c));
+            entries.emplace_back(static_cast<int>(6 * row) + r, static_cast<int>(6 * column) + c,
+                                 block(r, c));
     };
     for (std::uint32_t node = 0; node < graph.size(); ++node) {
       Matrix6 block = diagonal_stiffness(graph, node);
-      for (int d = 0; d < 6; ++d)
-        block(d, d) = block(d, d) > 0 ? block(d, d) * (1 + shift) : 1;
+      const auto [translation, rotation] = mean_stiffness(block);
+      const double least = negligible * std::max(translation, rotation);
+      for (int d = 0; d < 6; ++d) {
+        const double mean = d < 3 ? translation : rotation;
+        block(d, d) += mean > least ? shift * mean : 1;
+      }
       add(node, node, block);
     }
     for (const GroupGraph::Edge& edge : graph.edges()) {
-      Matrix6 first = Matrix6::Identity(), second = Matrix6::Identity(); // rigid motion at the middle of the branch
+      Matrix6 first = Matrix6::Identity(),
+              second = Matrix6::Identity(); // rigid motion at the middle of the branch
       first.topRightCorner<3, 3>() = -cross_matrix(0.5 * edge.branch);
       second.topRightCorner<3, 3>() = cross_matrix(0.5 * edge.branch);
       const Matrix6 block = -first.transpose() * edge.stiffness * second;
@@ -198,7 +207,9 @@ public:
   }
 
   bool factorised() const { return factor_ && factor_->info() == Eigen::Success; }
-  std::size_t entries() const { return static_cast<std::size_t>(factor_->matrixL().nestedExpression().nonZeros()); }
+  std::size_t entries() const {
+    return static_cast<std::size_t>(factor_->matrixL().nestedExpression().nonZeros());
+  }
 
 private:
   using Factor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;

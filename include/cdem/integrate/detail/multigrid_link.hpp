@@ -108,7 +108,8 @@ struct BondLink {
   }
   LinkPull pull(const Float4& slip, const Float4& turn) const {
     const Float4 n = Eigen::Map<const Float4>(direction_and_half_length.data());
-    return {tangential * slip + (normal_excess * slip.dot(n)) * n, bending * turn + (torsion_excess * turn.dot(n)) * n};
+    return {tangential * slip + (normal_excess * slip.dot(n)) * n,
+            bending * turn + (torsion_excess * turn.dot(n)) * n};
   }
 };
 static_assert(sizeof(BondLink) == 32);

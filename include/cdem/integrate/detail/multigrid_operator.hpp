@@ -38,8 +38,8 @@ struct LinkedNodes {
   NodeIndex size() const { return block_begin.back(); }
   std::size_t blocks() const { return block_begin.size() - 1; }
   std::size_t bytes() const {
-    return row_begin.size() * sizeof(row_begin[0]) + other.size() * sizeof(NodeIndex) + link.size() * sizeof(Link) +
-           ground.size() * sizeof(GroundSpring);
+    return row_begin.size() * sizeof(row_begin[0]) + other.size() * sizeof(NodeIndex) +
+           link.size() * sizeof(Link) + ground.size() * sizeof(GroundSpring);
   }
 
   /// Calls body(begin, end, f) for every block of nodes [begin, end), where f(node) = -K x is the force and moment that
@@ -71,7 +71,8 @@ private:
         const Float4 couple = half_branch.cross3(pull.force);
         sum.linear += pull.force;
         sum.angular += pull.moment + couple;
-        float* const reaction = force[std::min(other[e] - begin, count)].component; // below `begin` wraps to above
+        float* const reaction =
+            force[std::min(other[e] - begin, count)].component; // below `begin` wraps to above
         Twist back = Twist::load(reaction);
         back.linear -= pull.force;
         back.angular += couple - pull.moment;

@@ -23,14 +23,14 @@ bool is_stiff(const Stiffness& k) {
 /// Positions are found by following bonds, so that bonds through a periodic face need no special care; where a loop of
 /// bonds does not close, the part goes round a periodic cell and the mismatch tells how.
 struct Components {
-  std::vector<std::uint32_t> of;       ///< [particles] number of the part, by first particle
-  std::vector<Vec3> position;          ///< [particles] from the part's centre, m
-  std::vector<std::uint32_t> size;     ///< [parts] particles
-  std::vector<std::uint32_t> first;    ///< [parts] first particle
-  std::vector<double> radius;          ///< [parts] radius of gyration, m; at least a bond's length
-  std::vector<bool> periodic;          ///< [parts] goes round a periodic cell
-  std::vector<Matrix6> held;           ///< [parts] sum over what holds it of (row)'(row), rows of rigid motion about
-                                       ///< the centre, rotations times the radius
+  std::vector<std::uint32_t> of;    ///< [particles] number of the part, by first particle
+  std::vector<Vec3> position;       ///< [particles] from the part's centre, m
+  std::vector<std::uint32_t> size;  ///< [parts] particles
+  std::vector<std::uint32_t> first; ///< [parts] first particle
+  std::vector<double> radius;       ///< [parts] radius of gyration, m; at least a bond's length
+  std::vector<bool> periodic;       ///< [parts] goes round a periodic cell
+  std::vector<Matrix6> held; ///< [parts] sum over what holds it of (row)'(row), rows of rigid motion about
+                             ///< the centre, rotations times the radius
 
   std::size_t count() const { return size.size(); }
 };
@@ -59,12 +59,14 @@ Components find_components(const Forces& forces, double length_unit) {
           continue;
         const auto [from, to] = forces.ends(b);
         const std::uint32_t j = from == i ? to : from;
-        const Vec3 there = parts.position[i] + ((from == i ? 1 : -1) * forces.length(b)) * forces.direction(b);
+        const Vec3 there =
+            parts.position[i] + ((from == i ? 1 : -1) * forces.length(b)) * forces.direction(b);
         if (parts.of[j] == none) {
           parts.of[j] = part;
           parts.position[j] = there;
           queue.push_back(j);
-        } else if (const Vec3 gap = there - parts.position[j]; gap.squaredNorm() > 1e-4 * length_unit * length_unit) {
+        } else if (const Vec3 gap = there - parts.position[j];
+                   gap.squaredNorm() > 1e-4 * length_unit * length_unit) {
           const Mat3 turn = cross_matrix(gap);
           mismatch += turn.transpose() * turn; // a rotation opens the loop: it strains a bond
         }
@@ -128,12 +130,14 @@ inline std::string name_motions(const Eigen::MatrixXd& motions) {
 
 /// What can move, and what is left alone.
 struct Support {
-  std::vector<HeldMask> held;     ///< [particles] held degrees of freedom, all six of particles that are left alone
-  std::size_t rattlers = 0;       ///< particles without a bond that resists
+  std::vector<HeldMask>
+      held;                 ///< [particles] held degrees of freedom, all six of particles that are left alone
+  std::size_t rattlers = 0; ///< particles without a bond that resists
   std::size_t floating_clusters = 0;
   std::size_t floating_particles = 0;
   std::size_t loose_clusters = 0; ///< clusters that constraints do not hold in every motion
-  std::vector<std::uint32_t> drifting; ///< [particles] of a periodic body without a held translation, else empty
+  std::vector<std::uint32_t>
+      drifting; ///< [particles] of a periodic body without a held translation, else empty
 };
 
 /// Decides what is free, from the constraints and loads on each connected part.
@@ -155,7 +159,8 @@ Support find_support(const Problem<Forces>& problem, double length_unit) {
     Vector6 row = Vector6::Zero();
     if (constraint.dof < 3) {
       row[constraint.dof] = 1;
-      row.tail<3>() = parts.position[constraint.particle].cross(Vec3::Unit(constraint.dof)) / parts.radius[part];
+      row.tail<3>() =
+          parts.position[constraint.particle].cross(Vec3::Unit(constraint.dof)) / parts.radius[part];
     } else if (problem.forces.diagonal_block(constraint.particle)(constraint.dof, constraint.dof) > 0) {
       row[constraint.dof] = 1;
     }
@@ -174,17 +179,21 @@ Support find_support(const Problem<Forces>& problem, double length_unit) {
       load_size[part] += load.linear().norm() + moment.norm() / parts.radius[part];
     }
 
-  const auto body = static_cast<std::size_t>(std::max_element(parts.size.begin(), parts.size.end()) - parts.size.begin());
+  const auto body =
+      static_cast<std::size_t>(std::max_element(parts.size.begin(), parts.size.end()) - parts.size.begin());
   std::vector<bool> left_alone(parts.count(), false);
   for (std::size_t part = 0; part < parts.count(); ++part) {
     const Eigen::MatrixXd motions = free_motions(parts.held[part]);
     const bool is_body = part == body && parts.size[part] > 1;
     if (motions.cols() == 0)
       continue;
-    const std::string who = std::to_string(parts.size[part]) + " particle(s), the first is " + std::to_string(parts.first[part]);
+    const std::string who =
+        std::to_string(parts.size[part]) + " particle(s), the first is " + std::to_string(parts.first[part]);
     if (!wrench.empty() && (motions.transpose() * wrench[part]).norm() > 1e-9 * load_size[part])
-      core::reject("free rigid motion of the " + std::string(is_body ? "body" : "cluster") + " (" + who + ") under load",
-                   name_motions(motions), "constraints that hold it, or no load in this direction, are expected");
+      core::reject("free rigid motion of the " + std::string(is_body ? "body" : "cluster") + " (" + who +
+                       ") under load",
+                   name_motions(motions),
+                   "constraints that hold it, or no load in this direction, are expected");
     if (is_body) {
       core::expect(parts.periodic[part], "free rigid motion of the body (" + who + ")", name_motions(motions),
                    "constraints that hold it are expected");
