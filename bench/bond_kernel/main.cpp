@@ -1,13 +1,6 @@
 // Forces of all bonds, nanoseconds a bond: a raw loop, the library with bonds in double and in float.
 
-#include <cdem/bond/linear_forces.hpp>
-
 #include <benchmark/benchmark.h>
-
-#include <cstdint>
-#include <map>
-#include <stdexcept>
-#include <vector>
 
 #include "../common/raw_bonds.hpp"
 #include "../common/report.hpp"
@@ -20,37 +13,9 @@ double field_bytes(const bench::Sample& sample) {
   return 192.0 * static_cast<double>(sample.particles.size()) / static_cast<double>(sample.network.size());
 }
 
-const std::vector<bench::RawBond>& raw(std::int64_t particles) {
-  static std::map<std::int64_t, std::vector<bench::RawBond>> made;
-  const auto found = made.find(particles);
-  return found != made.end()
-             ? found->second
-             : made.emplace(particles, bench::raw_bonds(bench::sample(particles))).first->second;
-}
-
-/// Made once; throws if its forces are not those of the raw loop.
-template <class Real>
-const cdem::bond::BasicLinearForces<Real>& forces_of(std::int64_t particles) {
-  static std::map<std::int64_t, cdem::bond::BasicLinearForces<Real>> made;
-  const auto found = made.find(particles);
-  if (found != made.end())
-    return found->second;
-  const bench::Sample& sample = bench::sample(particles);
-  const auto& forces =
-      made.try_emplace(particles, bench::alumina(), sample.particles, sample.network).first->second;
-  const bench::Field motion = bench::random_motion(sample.particles.size());
-  bench::Field force(motion.size()), expected(motion.size());
-  cdem::core::ThreadPool pool;
-  forces.evaluate(motion, force, pool);
-  bench::raw_forces(raw(particles), motion, expected);
-  if (!(bench::relative_difference(expected, force) < (sizeof(Real) == 8 ? 1e-14 : 1e-6)))
-    throw std::logic_error("the library and the raw loop differ");
-  return forces;
-}
-
 void raw_loop(benchmark::State& state) {
   const bench::Sample& sample = bench::sample(state.range(0));
-  const auto& bonds = raw(state.range(0));
+  const auto& bonds = bench::raw_bonds(state.range(0));
   const bench::Field motion = bench::random_motion(sample.particles.size());
   bench::Field force(motion.size());
   for (auto _ : state) {
@@ -65,7 +30,7 @@ template <class Real>
 void library(benchmark::State& state) {
   const bench::Sample& sample = bench::sample(state.range(0));
   const auto threads = static_cast<int>(state.range(1));
-  const auto& forces = forces_of<Real>(state.range(0));
+  const auto& forces = bench::forces_of<Real>(state.range(0));
   const bench::Field motion = bench::random_motion(sample.particles.size());
   bench::Field force(motion.size());
   cdem::core::ThreadPool pool(threads);

@@ -5,10 +5,13 @@
 /// scattered. What the library must beat. It shares no code with it.
 
 #include <cdem/bond/bond_law.hpp>
+#include <cdem/bond/linear_forces.hpp>
 #include <cdem/particles/spatial_field.hpp>
 
 #include <cstdint>
 #include <cstring>
+#include <map>
+#include <stdexcept>
 #include <vector>
 
 #include "sample.hpp"
@@ -21,7 +24,8 @@ struct RawBond {
 };
 static_assert(sizeof(RawBond) == 72);
 
-inline std::vector<RawBond> raw_bonds(const Sample& sample) {
+namespace detail {
+inline std::vector<RawBond> make_raw_bonds(const Sample& sample) {
   const auto law = alumina();
   std::vector<RawBond> bonds;
   bonds.reserve(sample.network.size());
@@ -39,6 +43,16 @@ inline std::vector<RawBond> raw_bonds(const Sample& sample) {
                      k.bending});
   }
   return bonds;
+}
+} // namespace detail
+
+/// The sample's bonds, made once.
+inline const std::vector<RawBond>& raw_bonds(std::int64_t particles) {
+  static std::map<std::int64_t, std::vector<RawBond>> made;
+  const auto found = made.find(particles);
+  return found != made.end()
+             ? found->second
+             : made.emplace(particles, detail::make_raw_bonds(sample(particles))).first->second;
 }
 
 /// f = -K u.
@@ -64,6 +78,26 @@ inline void raw_forces(const std::vector<RawBond>& bonds, const Field& displacem
     f[0] += fx, f[1] += fy, f[2] += fz, f[4] += cx + mx, f[5] += cy + my, f[6] += cz + mz;
     g[0] -= fx, g[1] -= fy, g[2] -= fz, g[4] += cx - mx, g[5] += cy - my, g[6] += cz - mz;
   }
+}
+
+/// The library's forces on the sample, made once.
+/// @throws std::logic_error if they are not those of the raw loop
+template <class Real>
+const cdem::bond::BasicLinearForces<Real>& forces_of(std::int64_t particles) {
+  static std::map<std::int64_t, cdem::bond::BasicLinearForces<Real>> made;
+  const auto found = made.find(particles);
+  if (found != made.end())
+    return found->second;
+  const Sample& body = sample(particles);
+  const auto& forces = made.try_emplace(particles, alumina(), body.particles, body.network).first->second;
+  const Field motion = random_motion(body.particles.size());
+  Field force(motion.size()), expected(motion.size());
+  cdem::core::ThreadPool pool;
+  forces.evaluate(motion, force, pool);
+  raw_forces(raw_bonds(particles), motion, expected);
+  if (!(relative_difference(expected, force) < (sizeof(Real) == 8 ? 1e-14 : 1e-6)))
+    throw std::logic_error("the library and the raw loop differ");
+  return forces;
 }
 
 } // namespace bench

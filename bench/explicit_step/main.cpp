@@ -1,7 +1,6 @@
 // One explicit step, all told, nanoseconds a bond: VelocityVerlet on a body that vibrates freely with mass damping,
 // beside a hand-written step on the raw loop's forces.
 
-#include <cdem/bond/linear_forces.hpp>
 #include <cdem/integrate/critical_time_step.hpp>
 #include <cdem/integrate/velocity_verlet.hpp>
 #include <cdem/particles/constraints.hpp>
@@ -25,7 +24,7 @@ namespace {
 using namespace cdem;
 
 constexpr double alpha = 1000; ///< 1/s
-constexpr std::uint64_t steps = 4;
+constexpr std::uint64_t steps = 10;
 
 /// What moves: its inertia and a stable step. Made once a size.
 struct Body {
@@ -40,8 +39,8 @@ const Body& body_of(std::int64_t count) {
   const bench::Sample& sample = bench::sample(count);
   const std::vector<double> density{3900};
   Body body{particles::solid_spheres(sample.particles, density), 0};
-  const bond::CompactLinearForces forces(bench::alumina(), sample.particles, sample.network);
-  body.time_step = 0.5 * integrate::critical_time_step(forces, body.inertia).time_step;
+  body.time_step =
+      0.5 * integrate::critical_time_step(bench::forces_of<double>(count), body.inertia).time_step;
   return made.emplace(count, body).first->second;
 }
 
@@ -60,7 +59,7 @@ double field_bytes(const bench::Sample& sample) {
 void raw_step(benchmark::State& state) {
   const bench::Sample& sample = bench::sample(state.range(0));
   const Body& body = body_of(state.range(0));
-  const auto bonds = bench::raw_bonds(sample);
+  const auto& bonds = bench::raw_bonds(state.range(0));
   auto motion = moving(sample.particles.size());
   bench::Field force(motion.size());
   motion.acceleration.resize(motion.size());
@@ -92,7 +91,7 @@ void library_step(benchmark::State& state) {
   const bench::Sample& sample = bench::sample(state.range(0));
   const auto threads = static_cast<int>(state.range(1));
   const Body& body = body_of(state.range(0));
-  const bond::BasicLinearForces<Real> forces(bench::alumina(), sample.particles, sample.network);
+  const auto& forces = bench::forces_of<Real>(state.range(0));
   const particles::Constraints none;
   const integrate::Problem<bond::BasicLinearForces<Real>> problem{forces, body.inertia, none};
   const integrate::VelocityVerlet verlet({.time_step = body.time_step, .damping = {alpha, 0}});

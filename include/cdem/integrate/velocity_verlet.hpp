@@ -66,8 +66,7 @@ public:
   /// Advances `motion` by at most `steps`.
   ///
   /// @param motion    from Motion::at_rest() or an earlier run; after an exception it is that of the last
-  /// whole step,
-  ///                  except after a blow-up, which leaves nothing of use
+  ///                  whole step, except after a blow-up, which leaves nothing of use
   /// @param observer  bool(const Step&), called after every step; false ends the run
   /// @throws          core::InvalidInput for a motion that does not fit, is not finite, or goes on under other
   ///                  constraints than it began with; core::Interrupted;
@@ -108,6 +107,15 @@ public:
 
 private:
   using Field = particles::SpatialField<>;
+  using Four = Eigen::Array<double, 4, 1>; ///< three components and a zero
+
+  /// Components `first` to `first` + 3.
+  static Eigen::Map<Four, Eigen::Aligned32> four(particles::Spatial<>& spatial, int first) {
+    return Eigen::Map<Four, Eigen::Aligned32>(spatial.component + first);
+  }
+  static Eigen::Map<const Four, Eigen::Aligned32> four(const particles::Spatial<>& spatial, int first) {
+    return Eigen::Map<const Four, Eigen::Aligned32>(spatial.component + first);
+  }
 
   struct Workspace {
     template <class P>
@@ -199,67 +207,84 @@ private:
   template <class P>
   double accelerate(const P& problem, particles::Motion& motion, Workspace& work, core::ThreadPool& pool,
                     double advance) const {
-    const double alpha = parameters_.damping.alpha, beta = parameters_.damping.beta,
-                 dt = parameters_.time_step;
-    if (beta > 0)
+    if (parameters_.damping.beta > 0)
       damp_stiffness(problem, motion, work, pool, advance);
-    const double implicit = 1 / (1 + alpha * advance);
-    const auto use = [&](std::size_t begin, std::size_t end, const particles::Spatial<>* force) {
-      Sums sums;
-      const auto load_of = [&](std::size_t i, int c) {
-        return problem.load ? (*problem.load)[i].component[c] : 0;
-      };
-      const auto viscous_of = [&](std::size_t i, int c) {
-        return beta > 0 ? work.damped[i].component[c] - force[i - begin].component[c] : 0;
-      };
-      for (std::size_t i = begin; i < end; ++i) {
-        const double mass[2] = {problem.inertia.mass[i], problem.inertia.moment[i]};
-        const double inverse[2] = {1 / mass[0], 1 / mass[1]};
-        for (int c = 0; c < 8; ++c) {
-          const double elastic = force[i - begin].component[c], viscous = viscous_of(i, c),
-                       load = load_of(i, c);
-          const double free_acceleration = (elastic + viscous + load) * inverse[c / 4];
-          const double halfway =
-              motion.velocity[i].component[c] + advance * motion.acceleration[i].component[c];
-          const double velocity = (halfway + advance * free_acceleration) * implicit;
-          const double acceleration = free_acceleration - alpha * velocity;
-          motion.velocity[i].component[c] = velocity;
-          motion.acceleration[i].component[c] = acceleration;
-          work.next[i].component[c] =
-              motion.displacement[i].component[c] + dt * (velocity + 0.5 * dt * acceleration);
-          const double momentum = mass[c / 4] * velocity;
-          sums.kinetic += 0.5 * momentum * velocity;
-          sums.dissipated_power += alpha * momentum * velocity - viscous * velocity;
-          sums.external_power += load * velocity;
-        }
-      }
-      for (std::size_t k = first_constraint(problem, begin); k < problem.constraints.size(); ++k) {
-        const auto& constraint = problem.constraints.list()[k];
-        const std::size_t i = constraint.particle;
-        if (i >= end)
-          break;
-        const int c = constraint.dof < 3 ? constraint.dof : constraint.dof + 1;
-        const double mass = mass_of(problem.inertia, constraint);
-        const double elastic = force[i - begin].component[c], viscous = viscous_of(i, c),
-                     load = load_of(i, c);
-        // what the loop above booked for this degree of freedom as if it were free is replaced
-        const double wrong = motion.velocity[i].component[c], right = constraint.rate;
-        sums.kinetic += 0.5 * mass * (right * right - wrong * wrong);
-        sums.dissipated_power += alpha * mass * (right * right - wrong * wrong) - viscous * (right - wrong);
-        sums.external_power += load * (right - wrong);
-        motion.velocity[i].component[c] = right;
-        motion.acceleration[i].component[c] = 0;
-        work.next[i].component[c] = right * (motion.time + dt);
-        work.reaction[k] = alpha * mass * right - elastic - viscous - load;
-        sums.external_power += work.reaction[k] * right;
-      }
-      return sums;
-    };
+    const BlockStep<P> use{problem, motion, work, parameters_, advance};
     const Sums sums = with_forces(problem.forces, motion.displacement, work.force, pool, use);
     motion.energy.external_power = sums.external_power;
     motion.energy.dissipated_power = sums.dissipated_power;
     return sums.kinetic;
   }
+
+  /// What accelerate() does to the particles of one block, given the forces on them.
+  template <class P>
+  struct BlockStep {
+    const P& problem;
+    particles::Motion& motion;
+    Workspace& work;
+    const Parameters& parameters;
+    double advance;
+
+    Sums operator()(std::size_t begin, std::size_t end, const particles::Spatial<>* force) const {
+      Sums sums = move_freely(begin, end, force);
+      for (std::size_t k = first_constraint(problem, begin); k < problem.constraints.size(); ++k) {
+        if (problem.constraints.list()[k].particle >= end)
+          break;
+        impose(k, force[problem.constraints.list()[k].particle - begin], sums);
+      }
+      return sums;
+    }
+
+    /// All degrees of freedom, as if none were prescribed.
+    Sums move_freely(std::size_t begin, std::size_t end, const particles::Spatial<>* force) const {
+      const double alpha = parameters.damping.alpha, dt = parameters.time_step;
+      const double implicit = 1 / (1 + alpha * advance);
+      Four twice_kinetic = Four::Zero(), viscous_power = Four::Zero(), load_power = Four::Zero();
+      for (std::size_t i = begin; i < end; ++i)
+        for (const int first : {0, 4}) { // translation, rotation
+          const double mass = first == 0 ? problem.inertia.mass[i] : problem.inertia.moment[i];
+          const Four elastic = four(force[i - begin], first);
+          const Four viscous =
+              parameters.damping.beta > 0 ? Four(four(work.damped[i], first) - elastic) : Four::Zero();
+          const Four load = problem.load ? Four(four((*problem.load)[i], first)) : Four::Zero();
+          const Four free_acceleration = (elastic + viscous + load) * (1 / mass);
+          const Four halfway =
+              four(motion.velocity[i], first) + advance * four(motion.acceleration[i], first);
+          const Four velocity = (halfway + advance * free_acceleration) * implicit;
+          const Four acceleration = free_acceleration - alpha * velocity;
+          four(motion.velocity[i], first) = velocity;
+          four(motion.acceleration[i], first) = acceleration;
+          four(work.next[i], first) =
+              four(motion.displacement[i], first) + dt * (velocity + (0.5 * dt) * acceleration);
+          twice_kinetic += mass * velocity.square();
+          viscous_power += viscous * velocity;
+          load_power += load * velocity;
+        }
+      return {.kinetic = 0.5 * twice_kinetic.sum(),
+              .dissipated_power = alpha * twice_kinetic.sum() - viscous_power.sum(),
+              .external_power = load_power.sum()};
+    }
+
+    /// Prescribed degree of freedom `k`: what was booked for it as if it were free is replaced.
+    void impose(std::size_t k, const particles::Spatial<>& force, Sums& sums) const {
+      const auto& [particle, dof, rate] = problem.constraints.list()[k];
+      const double alpha = parameters.damping.alpha;
+      const double mass = mass_of(problem.inertia, problem.constraints.list()[k]);
+      const double elastic = force[dof];
+      const double viscous = parameters.damping.beta > 0 ? work.damped[particle][dof] - elastic : 0;
+      const double load = problem.load ? (*problem.load)[particle][dof] : 0;
+      double& velocity = motion.velocity[particle][dof];
+      const double gained = rate * rate - velocity * velocity;
+      sums.kinetic += 0.5 * mass * gained;
+      sums.dissipated_power += alpha * mass * gained - viscous * (rate - velocity);
+      sums.external_power += load * (rate - velocity);
+      velocity = rate;
+      motion.acceleration[particle][dof] = 0;
+      work.next[particle][dof] = rate * (motion.time + parameters.time_step);
+      work.reaction[k] = alpha * mass * rate - elastic - viscous - load;
+      sums.external_power += work.reaction[k] * rate;
+    }
+  };
 
   /// Sum of use(begin, end, force) over blocks of particles, in block order.
   template <class Forces, class Use>
