@@ -23,6 +23,7 @@
 #include <cdem/integrate/critical_time_step.hpp>
 #include <cdem/integrate/damping.hpp>
 #include <cdem/integrate/density_scaling.hpp>
+#include <cdem/integrate/dynamic_relaxation.hpp>
 #include <cdem/integrate/integrator.hpp>
 #include <cdem/integrate/rayleigh_quotient.hpp>
 #include <cdem/integrate/static_multigrid.hpp>
