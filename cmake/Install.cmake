@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/cdem) # headers alone: nothing here depends on the processor
 
-install(TARGETS cdem cdem_parallel EXPORT cdem-targets FILE_SET HEADERS)
+install(TARGETS cdem cdem_parallel EXPORT cdem-targets FILE_SET HEADERS FILE_SET internals)
 install(EXPORT cdem-targets NAMESPACE cdem:: DESTINATION ${package_dir})
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/cdem-config.cmake.in ${PROJECT_BINARY_DIR}/cdem-config.cmake

@@ -8,7 +8,6 @@
 #include <cdem/homogenize/tension_recorder.hpp>
 #include <cdem/integrate/density_scaling.hpp>
 #include <cdem/integrate/rayleigh_quotient.hpp>
-#include <cdem/integrate/static_multigrid.hpp>
 #include <cdem/integrate/velocity_verlet.hpp>
 #include <cdem/io/checkpoint.hpp>
 #include <cdem/io/packing_file.hpp>
@@ -25,6 +24,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "statics.hpp"
 
 namespace cdem::examples::rve_tension {
 
@@ -319,7 +320,7 @@ inline MaterialResult pull(const Material& material, const Params& params, const
     const core::Monitor shown([&](const core::Progress& progress) {
       monitor.report({material.name, progress.fraction, progress.detail});
     });
-    const auto report = integrate::StaticMultigrid().solve(problem, motion, pool, shown);
+    const Equilibrium report = solve_equilibrium(problem, motion, pool, shown);
     result.outer_iterations = report.iterations;
     result.residual = report.relative_residual;
     result.work = report.work;

@@ -26,7 +26,6 @@
 #include <cdem/integrate/dynamic_relaxation.hpp>
 #include <cdem/integrate/integrator.hpp>
 #include <cdem/integrate/rayleigh_quotient.hpp>
-#include <cdem/integrate/static_multigrid.hpp>
 #include <cdem/integrate/velocity_verlet.hpp>
 #include <cdem/io/atomic_file.hpp>
 #include <cdem/io/bonds_vtu.hpp>
