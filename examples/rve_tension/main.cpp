@@ -78,6 +78,10 @@ int main(int argc, char** argv) {
                   "keep spheres "
                   "apart, --growth below %g packs denser.\n",
                   result.packing.density, params.packing.density, params.packing.growth_rate);
+    if (!result.packing_loaded && result.packing.pressure < rve::jammed)
+      std::printf("The packing is not jammed (reduced pressure %.0f): hardly any spheres touch, so no "
+                  "rattlers are counted.\n",
+                  result.packing.pressure);
     for (const auto& m : result.materials)
       if (!m.converged)
         std::printf("%s: E and nu had not settled to %g by step %llu; --steps allows more.\n",
