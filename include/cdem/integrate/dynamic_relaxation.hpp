@@ -22,8 +22,7 @@ namespace cdem::integrate {
 ///
 /// Every particle gets the mass and the moment that make its own 6x6 block set the same step: in units of that
 /// time no frequency of a linear body exceeds sqrt(2) (see critical_time_step()), and dt is 0.98 of the step that
-/// is then surely stable. There is nothing to tune and no eigenvalue to estimate: each stretch between two peaks
-/// damps the slow modes about critically, whatever their frequency.
+/// is then surely stable. There is nothing to tune and no lowest frequency to estimate.
 ///
 /// Where forces stiffen with displacement, diagonal_block() bounds nothing. So each step measures the curvature
 /// along itself, omega^2 = v.(r_before - r_after) / (dt v.M v); a step longer than that allows (omega dt > 2) is taken
@@ -80,7 +79,7 @@ public:
   ///                             likely cause; the motion then holds the last iterate
   /// @throws core::Interrupted   if the monitor asks to stop, between two steps: going on from the motion is a restart
   /// @complexity O(bonds) a step; steps grow with the body's number of particles across, see docs/integration.md. Two
-  ///             fields of the body's size and 17 bytes a particle
+  ///             fields of the body's size (three at the start) and 17 bytes a particle
   template <InternalForces Forces>
   Report solve(const Problem<Forces>& problem, particles::Motion& motion, core::ThreadPool& pool,
                const core::Monitor& monitor = {}) const {
