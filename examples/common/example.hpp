@@ -16,6 +16,8 @@
 #include <string>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <utility>
+#include <vector>
 
 namespace cdem::examples {
 
@@ -46,6 +48,29 @@ struct CommonOptions {
     app.add_flag("!--no-plot", plot, "Draw no pictures");
   }
 };
+
+/// Adds an option that takes one of a few words; `value` holds the default.
+template <class Value>
+void add_choice(CLI::App& app, const std::string& option, Value& value,
+                const std::vector<std::pair<std::string, Value>>& choices, const std::string& help) {
+  std::vector<std::string> words;
+  std::string standard;
+  for (const auto& [word, meaning] : choices) {
+    words.push_back(word);
+    if (meaning == value)
+      standard = word;
+  }
+  app.add_option_function<std::string>(
+         option,
+         [&value, choices](const std::string& text) {
+           for (const auto& [word, meaning] : choices)
+             if (word == text)
+               value = meaning;
+         },
+         help)
+      ->check(CLI::IsMember(words))
+      ->default_str(standard);
+}
 
 /// Runs `body` and turns what goes wrong into one line on stderr and an exit status: 2 for a bad option or value,
 /// 130 for Ctrl-C, 1 for anything else.

@@ -1,7 +1,6 @@
 // Young's modulus and Poisson's ratio of a homogeneous cube by a tension test: [L17] section 2.3.
 
 #include <cstdio>
-#include <map>
 
 #include "common/example.hpp"
 #include "report.hpp"
@@ -23,28 +22,23 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--growth", params.packing.growth_rate, "Growth rate of the spheres: slower packs denser")
       ->capture_default_str();
-  app.add_option("--boundary", boundary, "Box of the packing: periodic (then cut to a cube) or walls")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, packing::Boundary>{
-          {"periodic", packing::Boundary::periodic}, {"walls", packing::Boundary::walls}}))
-      ->default_str("periodic");
+  examples::add_choice<packing::Boundary>(
+      app, "--boundary", boundary,
+      {{"periodic", packing::Boundary::periodic}, {"walls", packing::Boundary::walls}},
+      "Box of the packing: periodic (then cut to a cube) or walls");
   app.add_option("--coordination", params.coordination, "Coordination number Z")->capture_default_str();
-  app.add_option("--axis", params.axis, "Axis of the tension: x, y or z")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Axis>{{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}}))
-      ->default_str("x");
-  app.add_option("--method", params.method,
-                 "verlet: the paper's explicit steps; static: the equilibrium, by multigrid")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, rve::Method>{
-          {"verlet", rve::Method::verlet}, {"static", rve::Method::statics}}))
-      ->default_str("verlet");
+  examples::add_choice<Axis>(app, "--axis", params.axis, {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}},
+                             "Axis of the tension");
+  examples::add_choice<rve::Method>(app, "--method", params.method,
+                                    {{"verlet", rve::Method::verlet}, {"static", rve::Method::statics}},
+                                    "The paper's explicit steps, or the equilibrium by multigrid");
   app.add_option("--damping", params.damping_ratio, "Damping ratio of the first axial vibration")
       ->capture_default_str();
-  app.add_option("--scaling", params.scaling,
-                 "Density scaling to the paper's time step: per_particle or uniform")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, integrate::DensityScaling>{
-          {"per_particle", integrate::DensityScaling::per_particle},
-          {"uniform", integrate::DensityScaling::uniform}}))
-      ->default_str("per_particle");
+  using integrate::DensityScaling;
+  examples::add_choice<DensityScaling>(
+      app, "--scaling", params.scaling,
+      {{"per_particle", DensityScaling::per_particle}, {"uniform", DensityScaling::uniform}},
+      "Density scaling to the paper's time step");
   app.add_option("--steps", params.most_steps, "Most steps of a run that does not converge before")
       ->capture_default_str();
   app.add_flag("--resume", params.resume, "Go on from the checkpoints in the results folder");
@@ -75,8 +69,7 @@ int main(int argc, char** argv) {
     std::printf("%s\n", rve::tabulate(params, result).text().c_str());
     if (!result.packing_loaded && !result.packing.reached())
       std::printf("The packing jammed at a density of %.4f, below the %.4g asked for: walls and equal sizes "
-                  "keep spheres "
-                  "apart, --growth below %g packs denser.\n",
+                  "keep spheres apart; --growth below %g packs denser.\n",
                   result.packing.density, params.packing.density, params.packing.growth_rate);
     if (!result.packing_loaded && result.packing.pressure < rve::jammed)
       std::printf("The packing is not jammed (reduced pressure %.0f): hardly any spheres touch, so no "

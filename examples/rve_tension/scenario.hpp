@@ -226,7 +226,7 @@ inline void load(const std::filesystem::path& path, const std::string& identity,
 }
 
 /// The packing: loaded when resuming and it was made with the same parameters, else made and saved. One that jams
-/// below the density asked for is used all the same, and its report says so; one that does not end well is an error.
+/// up to a tenth below the density asked for is used all the same, and its report says so; any other is an error.
 inline packing::Packing<packing::LubachevskyStillinger::Report>
 make_packing(const Params& params, bool& loaded, const core::Monitor& monitor) {
   const std::filesystem::path file = params.checkpoints / "packing.cdem";
@@ -241,7 +241,9 @@ make_packing(const Params& params, bool& loaded, const core::Monitor& monitor) {
     }
   }
   auto packing = packing::LubachevskyStillinger(params.packing).pack(monitor);
-  if (packing.report.reason != packing::StopReason::pressure_limit)
+  const bool usable = packing.report.reason == packing::StopReason::pressure_limit &&
+                      packing.report.density >= 0.9 * params.packing.density;
+  if (!usable)
     packing.report.require_reached();
   if (!params.checkpoints.empty())
     io::save_packing(file, packing.particles, packing.box, identity);

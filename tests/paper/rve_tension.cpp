@@ -158,6 +158,16 @@ TEST_CASE("bad parameters are refused before anything is computed or written") {
   refuse([&](rve::Params& p) { p.particles_per_specimen = 1e6; }, "particles per specimen");
 }
 
+TEST_CASE(
+    "a density far above what can be packed is an error that names what was reached, and writes nothing") {
+  const Folder folder("dense");
+  rve::Params params = small();
+  params.checkpoints = folder.path;
+  params.packing.density = 0.9;
+  CHECK_THROWS_WITH_AS(rve::run(params), doctest::Contains("density 0.9 was not reached"), core::NotReached);
+  CHECK(std::filesystem::is_empty(folder.path));
+}
+
 TEST_CASE("the results table names what it must, with the paper's values") {
   const rve::Params params = small();
   const rve::Result result = rve::run(params);
