@@ -172,15 +172,19 @@ TEST_CASE("the results table names what it must, with the paper's values") {
   const rve::Params params = small();
   const rve::Result result = rve::run(params);
   const io::Results table = rve::tabulate(params, result);
-  for (const auto& [quantity, reference] :
-       {std::pair{"alumina.youngs_modulus", 350e9}, std::pair{"alumina.poissons_ratio", 0.24},
-        std::pair{"silica.youngs_modulus", 65e9}, std::pair{"silica.poissons_ratio", 0.2}}) {
+  struct Printed {
+    const char* quantity;
+    double value;
+  };
+  for (const Printed& printed :
+       {Printed{"alumina.youngs_modulus", 350e9}, Printed{"alumina.poissons_ratio", 0.24},
+        Printed{"silica.youngs_modulus", 65e9}, Printed{"silica.poissons_ratio", 0.2}}) {
     bool found = false;
     for (const auto& row : table.list())
-      if (row.quantity == quantity) {
+      if (row.quantity == printed.quantity) {
         found = true;
-        CHECK(row.reference.value() == doctest::Approx(reference));
+        CHECK(row.reference.value() == doctest::Approx(printed.value));
       }
-    CHECK_MESSAGE(found, quantity);
+    CHECK_MESSAGE(found, printed.quantity);
   }
 }
