@@ -36,7 +36,7 @@ public:
         1e-8; ///< wanted: residual over that of the prescribed motion with all else at rest
     int max_iterations = 1000;
     int group_size = 20;     ///< particles to a group, 2 to 1000
-    int smoothing_steps = 2; ///< Chebyshev steps before and after each coarse correction, 1 to 16
+    int smoothing_steps = 3; ///< Chebyshev steps before and after each coarse correction, 1 to 16
   };
 
   /// One level of the hierarchy, the particles first.
@@ -233,7 +233,9 @@ private:
     bool guessed = false;
     for (std::uint32_t i = 0; i < displacement.size(); ++i)
       for (int d = 0; d < 6; ++d) {
-        core::expect_finite(displacement[i][d], "initial displacement of particle " + std::to_string(i));
+        if (!std::isfinite(displacement[i][d]))
+          core::reject("initial displacement of particle " + std::to_string(i), displacement[i][d],
+                       "a finite number is expected");
         if (support_.held[i] >> d & 1)
           displacement[i][d] = 0;
         else

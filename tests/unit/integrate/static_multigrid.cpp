@@ -251,6 +251,7 @@ TEST_CASE("Loads, prescribed rotations and an initial guess") {
   }
 }
 
+// The slender chain bends a million times what its bonds stretch: rounding allows a residual of 1e-10, not less.
 TEST_CASE("A chain of beams bends like the exact cantilever") {
   const int bonds = 40;
   const double length = bonds, force = 3.0, youngs_modulus = 1e6, radius_ratio = 0.5;
@@ -266,7 +267,7 @@ TEST_CASE("A chain of beams bends like the exact cantilever") {
   hold(constraints, 0);
   particles::SpatialField<> load(body.particles.size());
   load[bonds][0] = force;
-  const Solution solution = solve(forces, constraints, &load, 1, {.relative_residual = 1e-10});
+  const Solution solution = solve(forces, constraints, &load, 1, {.relative_residual = 1e-9});
   const double bending = youngs_modulus * second_moment;
   CHECK(solution.motion.displacement[bonds][0] ==
         doctest::Approx(force * std::pow(length, 3) / (3 * bending)).epsilon(1e-6));

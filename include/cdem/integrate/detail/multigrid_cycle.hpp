@@ -84,8 +84,8 @@ void restrict_residual(const Level<Link>& level, Field& group_rhs, core::ThreadP
         residual += force(node);
         if (!level.held.empty() && level.held[node] != 0)
           residual = free_part(residual, level.held[node]);
-        const Eigen::Map<const Float4> arm(level.arm.data() + 4 * std::size_t{node});
-        residual.angular += arm.cross3(residual.linear);
+        const Float4 arm = load4(level.arm.data() + 4 * std::size_t{node});
+        residual.angular += cross(arm, residual.linear);
         sum += residual;
       }
       sum.clean().store(group_rhs[group].component);
@@ -100,8 +100,8 @@ void add_group_motion(Level<Link>& level, const Field& group_x, core::ThreadPool
     for (NodeIndex group = level.block_group[block]; group < level.block_group[block + 1]; ++group) {
       const Twist motion = Twist::load(group_x[group].component);
       for (NodeIndex node = level.group_begin[group]; node < level.group_begin[group + 1]; ++node) {
-        const Eigen::Map<const Float4> arm(level.arm.data() + 4 * std::size_t{node});
-        Twist carried{motion.linear + motion.angular.cross3(arm), motion.angular};
+        const Float4 arm = load4(level.arm.data() + 4 * std::size_t{node});
+        Twist carried{motion.linear + cross(motion.angular, arm), motion.angular};
         if (!level.held.empty() && level.held[node] != 0)
           carried = free_part(carried, level.held[node]);
         carried += Twist::load(level.x[node].component);
@@ -113,7 +113,8 @@ void add_group_motion(Level<Link>& level, const Field& group_x, core::ThreadPool
 
 /// What the cycle may be told.
 struct CycleParameters {
-  int smoothing_steps = 2; ///< Chebyshev steps before and after the coarse correction
+  int smoothing_steps = 3;       ///< Chebyshev steps before and after the coarse correction
+  int group_smoothing_steps = 2; ///< the same on the levels of groups
   double inner_tolerance =
       0.25; ///< an inner iteration that cut the residual so far is not followed by a second
 };
@@ -216,8 +217,9 @@ private:
 
   template <class Link>
   void cycle(Level<Link>& level, std::size_t coarse, core::ThreadPool& pool) {
+    const int steps = coarse == 0 ? parameters_.smoothing_steps : parameters_.group_smoothing_steps;
     start_smoothing(level, pool);
-    for (int k = 1; k < parameters_.smoothing_steps; ++k)
+    for (int k = 1; k < steps; ++k)
       smooth(level, k, pool);
     const bool last = coarse == levels_.size();
     restrict_residual(level, last ? coarsest_rhs_ : levels_[coarse].level.rhs, pool);
@@ -226,33 +228,33 @@ private:
     else
       solve(coarse, pool);
     add_group_motion(level, last ? coarsest_x_ : levels_[coarse].level.x, pool);
-    for (int k = 0; k < parameters_.smoothing_steps; ++k)
+    for (int k = 0; k < steps; ++k)
       smooth(level, k, pool);
-    (coarse == 0 ? applications_ : levels_[coarse - 1].applications) += 2 * parameters_.smoothing_steps;
+    (coarse == 0 ? applications_ : levels_[coarse - 1].applications) += 2 * steps;
   }
 
   /// x = approximate solution of K x = rhs on a level of groups, by up to two iterations; overwrites rhs.
   void solve(std::size_t index, core::ThreadPool& pool) {
     GroupLevel& group_level = levels_[index];
     Level<GroupLink>& level = group_level.level;
-    const double start = dot(level.rhs, level.rhs, pool);
+    const double start = inner(level.rhs, level.rhs, pool);
     cycle(level, index + 1, pool);
     apply(group_level, level.x, group_level.image, pool);
-    const double energy = dot(level.x, group_level.image, pool), work = dot(level.x, level.rhs, pool);
+    const double energy = inner(level.x, group_level.image, pool), work = inner(level.x, level.rhs, pool);
     if (!(energy > 0))
       return;
     const auto step = static_cast<float>(work / energy);
     std::swap(group_level.search, level.x);
     combine(level.rhs, 1, level.rhs, -step, group_level.image, pool);
-    const double left = dot(level.rhs, level.rhs, pool);
+    const double left = inner(level.rhs, level.rhs, pool);
     if (left <= parameters_.inner_tolerance * parameters_.inner_tolerance * start) {
       combine(level.x, step, group_level.search, 0, group_level.search, pool);
       return;
     }
     cycle(level, index + 1, pool);
     apply(group_level, level.x, group_level.image2, pool);
-    const double coupling = dot(level.x, group_level.image, pool),
-                 energy2 = dot(level.x, group_level.image2, pool), work2 = dot(level.x, level.rhs, pool),
+    const double coupling = inner(level.x, group_level.image, pool),
+                 energy2 = inner(level.x, group_level.image2, pool), work2 = inner(level.x, level.rhs, pool),
                  rest = energy2 - coupling * coupling / energy;
     const double step2 = rest > 0 ? work2 / rest : 0;
     combine(level.x, static_cast<float>(step2), level.x,
@@ -268,12 +270,12 @@ private:
     group_level.applications += 1;
   }
 
-  static double dot(const Field& a, const Field& b, core::ThreadPool& pool) {
+  static double inner(const Field& a, const Field& b, core::ThreadPool& pool) {
     return core::parallel_sum(pool, a.size(), 0.0, [&](std::size_t begin, std::size_t end) {
       double sum = 0;
       for (std::size_t node = begin; node < end; ++node) {
         const Twist u = Twist::load(a[node].component), v = Twist::load(b[node].component);
-        sum += static_cast<double>(u.linear.dot(v.linear) + u.angular.dot(v.angular));
+        sum += static_cast<double>(dot(u.linear, v.linear)[0] + dot(u.angular, v.angular)[0]);
       }
       return sum;
     });

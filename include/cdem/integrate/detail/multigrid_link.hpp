@@ -36,7 +36,6 @@ namespace detail {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Float4 = Eigen::Vector4f;
 
 /// [v]x, the matrix whose product with w is v x w.
 inline Mat3 cross_matrix(const Vec3& v) {
@@ -55,18 +54,41 @@ inline Matrix6 carried(const Matrix6& stiffness, const Vec3& arm) {
   return whole;
 }
 
-/// Translation and rotation of a node, or force and moment on it; the fourth lane of each means nothing.
-struct Twist {
-  Float4 linear = Float4::Zero();
-  Float4 angular = Float4::Zero();
+/// Three floats in a vector register; the fourth lane means nothing. A vector type of GCC and Clang: Eigen's cross3()
+/// goes through memory here, which costs three times the rest of a link.
+using Float4 [[gnu::vector_size(16)]] = float;
 
-  static Twist load(const float* component) {
-    return {Eigen::Map<const Float4, Eigen::Aligned16>(component),
-            Eigen::Map<const Float4, Eigen::Aligned16>(component + 4)};
-  }
+inline Float4 load4(const float* place) {
+  Float4 value;
+  __builtin_memcpy(&value, place, sizeof value);
+  return value;
+}
+inline void store4(const Float4& value, float* place) {
+  __builtin_memcpy(place, &value, sizeof value);
+}
+
+/// Components y, z, x.
+inline Float4 rotated(const Float4& v) {
+  return __builtin_shufflevector(v, v, 1, 2, 0, 3);
+}
+inline Float4 cross(const Float4& a, const Float4& b) {
+  return rotated(a * rotated(b) - rotated(a) * b);
+}
+/// a . b in each of the three lanes.
+inline Float4 dot(const Float4& a, const Float4& b) {
+  const Float4 product = a * b, next = rotated(product);
+  return product + next + rotated(next);
+}
+
+/// Translation and rotation of a node, or force and moment on it.
+struct Twist {
+  Float4 linear{};
+  Float4 angular{};
+
+  static Twist load(const float* component) { return {load4(component), load4(component + 4)}; }
   void store(float* component) const {
-    Eigen::Map<Float4, Eigen::Aligned16>{component} = linear;
-    Eigen::Map<Float4, Eigen::Aligned16>{component + 4} = angular;
+    store4(linear, component);
+    store4(angular, component + 4);
   }
   Twist& operator+=(const Twist& other) {
     linear += other.linear;
@@ -83,9 +105,9 @@ struct Twist {
   }
   /// The same with zero in the lanes that mean nothing.
   Twist clean() const {
-    Twist result = *this;
-    result.linear[3] = result.angular[3] = 0;
-    return result;
+    const Float4 zero{};
+    return {__builtin_shufflevector(linear, zero, 0, 1, 2, 4),
+            __builtin_shufflevector(angular, zero, 0, 1, 2, 4)};
   }
 };
 
@@ -104,12 +126,12 @@ struct BondLink {
   float torsion_excess;                           ///< S_n - E_mu I / L
 
   Float4 half_branch() const {
-    return direction_and_half_length[3] * Eigen::Map<const Float4>(direction_and_half_length.data());
+    return direction_and_half_length[3] * load4(direction_and_half_length.data());
   }
   LinkPull pull(const Float4& slip, const Float4& turn) const {
-    const Float4 n = Eigen::Map<const Float4>(direction_and_half_length.data());
-    return {tangential * slip + (normal_excess * slip.dot(n)) * n,
-            bending * turn + (torsion_excess * turn.dot(n)) * n};
+    const Float4 n = load4(direction_and_half_length.data());
+    return {tangential * slip + normal_excess * dot(slip, n) * n,
+            bending * turn + torsion_excess * dot(turn, n) * n};
   }
 };
 static_assert(sizeof(BondLink) == 32);
@@ -117,10 +139,13 @@ static_assert(sizeof(BondLink) == 32);
 /// Product of a 6x6 matrix stored column by column, with one float after it that may be read, and a twist.
 inline Twist multiply(const float* columns, const Float4& linear, const Float4& angular) {
   Twist sum;
-  for (int k = 0; k < 6; ++k) {
-    const float x = k < 3 ? linear[k] : angular[k - 3];
-    sum.linear += x * Eigen::Map<const Float4>(columns + 6 * k);
-    sum.angular += x * Eigen::Map<const Float4>(columns + 6 * k + 3);
+  for (int k = 0; k < 3; ++k) {
+    sum.linear += linear[k] * load4(columns + 6 * k);
+    sum.angular += linear[k] * load4(columns + 6 * k + 3);
+  }
+  for (int k = 0; k < 3; ++k) {
+    sum.linear += angular[k] * load4(columns + 6 * k + 18);
+    sum.angular += angular[k] * load4(columns + 6 * k + 21);
   }
   return sum;
 }
@@ -129,7 +154,7 @@ inline Twist multiply(const float* columns, const Float4& linear, const Float4& 
 struct GroupLink {
   std::array<float, 40> data{}; ///< 36 of the symmetric stiffness, 3 of the half branch, 1 unused
 
-  Float4 half_branch() const { return Eigen::Map<const Float4>(data.data() + 36); }
+  Float4 half_branch() const { return load4(data.data() + 36); }
   LinkPull pull(const Float4& slip, const Float4& turn) const {
     const Twist product = multiply(data.data(), slip, turn);
     return {product.linear, product.angular};

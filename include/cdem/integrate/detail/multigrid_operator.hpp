@@ -65,10 +65,10 @@ private:
         const Twist there = Twist::load(x[other[e]].component);
         const Float4 half_branch = link[e].half_branch();
         const Float4 rotations = here.angular + there.angular;
-        const Float4 slip = there.linear - here.linear - rotations.cross3(half_branch);
+        const Float4 slip = there.linear - here.linear - cross(rotations, half_branch);
         const Float4 turn = there.angular - here.angular;
         const LinkPull pull = link[e].pull(slip, turn);
-        const Float4 couple = half_branch.cross3(pull.force);
+        const Float4 couple = cross(half_branch, pull.force);
         sum.linear += pull.force;
         sum.angular += pull.moment + couple;
         float* const reaction =

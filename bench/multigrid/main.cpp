@@ -1,0 +1,157 @@
+// Static tension to a relative residual of 1e-8: conjugate gradients preconditioned by 6x6 blocks, written by hand on the
+// library's operator, beside the static multigrid. Arguments: particles, 1000 r_mu, contrast (stiffness of a
+// sphere of radius 0.3 sides over that around it, as a power of ten), threads.
+
+#include <cdem/bond/linear_forces.hpp>
+#include <cdem/boundary/symmetric_tension.hpp>
+#include <cdem/integrate/static_multigrid.hpp>
+
+#include <Eigen/Cholesky>
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "../common/sample.hpp"
+
+namespace {
+
+using namespace cdem;
+using Forces = bond::LinearForces;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+/// A cube under symmetric tension along x, with a spherical inclusion.
+struct Tension {
+  explicit Tension(const benchmark::State& state)
+      : sample(bench::sample(state.range(0))), particles(with_inclusion(sample)),
+        forces(law(static_cast<double>(state.range(1)) / 1000,
+                   std::pow(10.0, static_cast<double>(state.range(2)))),
+               particles, sample.network),
+        setup(boundary::SymmetricTension{.velocity = 1e-6}.apply(particles, sample.network, sample.box)),
+        inertia{std::vector<double>(particles.size(), 1), std::vector<double>(particles.size(), 1)},
+        motion(particles::Motion::at_rest(particles.size())) {}
+
+  static particles::ParticleSet with_inclusion(const bench::Sample& sample) {
+    particles::ParticleSet particles = sample.particles;
+    const Vec3 centre = 0.5 * (sample.box.lower + sample.box.upper);
+    const double radius = 0.3 * sample.box.size().x();
+    for (std::size_t i = 0; i < particles.size(); ++i)
+      particles.phase[i] = (particles.position[i] - centre).norm() < radius ? 1 : 0;
+    return particles;
+  }
+  static bond::Beam<> law(double radius_ratio, double contrast) {
+    return bond::Beam<>({{{1e11, radius_ratio}, {1e11 * contrast, radius_ratio}}, {}});
+  }
+
+  const bench::Sample& sample;
+  particles::ParticleSet particles;
+  Forces forces;
+  boundary::TensionSetup setup;
+  particles::Inertia inertia;
+  particles::Motion motion;
+};
+
+void static_multigrid(benchmark::State& state) {
+  Tension tension(state);
+  core::ThreadPool pool(static_cast<int>(state.range(3)));
+  const integrate::Problem<Forces> problem{tension.forces, tension.inertia, tension.setup.constraints};
+  integrate::StaticMultigrid::Report report;
+  for (auto _ : state) {
+    tension.motion = particles::Motion::at_rest(tension.particles.size());
+    report = integrate::StaticMultigrid().solve(problem, tension.motion, pool);
+  }
+  const auto count = static_cast<double>(tension.particles.size());
+  state.counters["particles"] = count;
+  state.counters["iterations"] = report.iterations;
+  state.counters["work"] = report.work;
+  state.counters["complexity"] = report.operator_complexity;
+  state.counters["setup_s"] = report.setup_seconds;
+  state.counters["solve_s"] = report.solve_seconds;
+  state.counters["us_per_particle"] = 1e6 * (report.setup_seconds + report.solve_seconds) / count;
+  state.counters["bytes_per_particle"] = static_cast<double>(report.bytes) / count;
+}
+
+Vector6 vector_of(const particles::Spatial<>& spatial) {
+  Vector6 vector;
+  vector << spatial.linear(), spatial.angular();
+  return vector;
+}
+
+void block_jacobi_by_hand(benchmark::State& state) {
+  Tension tension(state);
+  core::ThreadPool pool(static_cast<int>(state.range(3)));
+  const std::size_t count = tension.particles.size();
+  int iterations = 0;
+  for (auto _ : state) {
+    std::vector<Vector6> free(count, Vector6::Ones()), r(count), p(count, Vector6::Zero());
+    particles::SpatialField<> u(count), direction(count), force(count);
+    for (const auto& constraint : tension.setup.constraints.list()) {
+      free[constraint.particle][constraint.dof] = 0;
+      u[constraint.particle][constraint.dof] = constraint.rate;
+    }
+    std::vector<Matrix6> inverse(count, Matrix6::Zero());
+    for (ParticleIndex i = 0; i < count; ++i) {
+      if (tension.forces.bonds_of(i).size() == 0)
+        continue;
+      Matrix6 block = free[i].asDiagonal() * tension.forces.diagonal_block(i) * free[i].asDiagonal();
+      for (int d = 0; d < 6; ++d)
+        if (free[i][d] == 0)
+          block(d, d) = 1;
+      inverse[i] = free[i].asDiagonal() * block.inverse() * free[i].asDiagonal();
+    }
+    tension.forces.evaluate(u, force, pool);
+    double norm0 = 0, rz_before = 1, norm = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      r[i] = vector_of(force[i]).cwiseProduct(free[i]);
+      norm0 += r[i].squaredNorm();
+    }
+    for (iterations = 0, norm = norm0; norm > 1e-16 * norm0 && iterations < 20000; ++iterations) {
+      double rz = 0, curvature = 0;
+      for (std::size_t i = 0; i < count; ++i)
+        rz += r[i].dot(inverse[i] * r[i]);
+      for (std::size_t i = 0; i < count; ++i) {
+        p[i] = inverse[i] * r[i] + (iterations == 0 ? 0 : rz / rz_before) * p[i];
+        direction[i].linear() = p[i].head<3>();
+        direction[i].angular() = p[i].tail<3>();
+      }
+      tension.forces.evaluate(direction, force, pool);
+      for (std::size_t i = 0; i < count; ++i)
+        curvature -= p[i].dot(vector_of(force[i]));
+      norm = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        r[i] += rz / curvature * vector_of(force[i]).cwiseProduct(free[i]);
+        norm += r[i].squaredNorm();
+      }
+      rz_before = rz;
+    }
+  }
+  state.counters["particles"] = static_cast<double>(count);
+  state.counters["iterations"] = iterations;
+}
+
+void sizes(benchmark::internal::Benchmark* benchmark) {
+  for (const std::int64_t particles : {10'000, 100'000, 1'000'000})
+    for (const std::int64_t radius_ratio : {545, 169})
+      benchmark->Args({particles, radius_ratio, 0, 2});
+}
+
+BENCHMARK(block_jacobi_by_hand)
+    ->Args({10'000, 545, 0, 2})
+    ->Args({100'000, 545, 0, 2})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(static_multigrid)->Apply(sizes)->Unit(benchmark::kMillisecond);
+BENCHMARK(static_multigrid)
+    ->Args({100'000, 545, -2, 2})
+    ->Args({100'000, 545, 2, 2})
+    ->Args({100'000, 545, 0, 1})
+    ->Args({700'000, 545, 0, 2})
+    ->Args({1'000'000, 545, 2, 2})
+    ->Args({4'000'000, 545, 0, 2})
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
+
+} // namespace
+
+BENCHMARK_MAIN();
