@@ -41,7 +41,9 @@ void library(benchmark::State& state) {
   }
   const auto bonds = static_cast<double>(sample.network.size());
   state.counters["bytes_per_bond"] = static_cast<double>(forces.memory()) / bonds;
-  bench::count_items(state, bonds, 8.0 * sizeof(Real) + field_bytes(sample), threads);
+  bench::count_items(
+      state, bonds,
+      static_cast<double>(sizeof(cdem::bond::detail::BondGroup<Real>)) / 4 + field_bytes(sample), threads);
 }
 
 constexpr auto milliseconds = benchmark::kMillisecond;

@@ -46,15 +46,15 @@ SpatialField evaluated(const LinearForces& forces, const SpatialField& motion, i
 
 /// A random body big enough for several blocks of a parallel loop.
 const Body& large_body() {
-  static const Body body = body::random_body(6000, 8);
+  static const Body body = body::random_body(7000, 8);
   return body;
 }
 
 } // namespace
 
 TEST_CASE("the force on each particle is the sum of its bonds' loads") {
-  for (const std::size_t count : {1u, 2u, 3u, 70u, 700u, 6000u}) {
-    const Body random = count == 6000 ? large_body() : body::random_body(count, count);
+  for (const std::size_t count : {1u, 2u, 3u, 70u, 700u, 7000u}) {
+    const Body random = count == 7000 ? large_body() : body::random_body(count, count);
     const LinearForces forces(beam, random.particles, random.network);
     const SpatialField motion = body::random_motion(count, 1, 9);
     const SpatialField force = evaluated(forces, motion);
