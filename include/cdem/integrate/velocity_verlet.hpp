@@ -5,6 +5,7 @@
 
 #include <cdem/integrate/critical_time_step.hpp>
 #include <cdem/integrate/damping.hpp>
+#include <cdem/integrate/detail/verlet_step.hpp>
 #include <cdem/integrate/integrator.hpp>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <concepts>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -48,6 +50,9 @@ public:
   struct Parameters {
     double time_step = 0; ///< dt, s
     Damping damping = {};
+    /// The observer sees every step whose number is a multiple of this. A step that nobody sees keeps no velocity and
+    /// acceleration of its own, which saves a third of what a step moves through memory.
+    std::uint64_t observe_every = 1;
   };
   struct Report {
     std::uint64_t steps = 0; ///< done in this run
@@ -59,6 +64,8 @@ public:
   explicit VelocityVerlet(Parameters parameters) : parameters_(parameters) {
     core::expect_positive(parameters_.time_step, "time_step", "s");
     parameters_.damping.validate();
+    core::expect(parameters_.observe_every >= 1, "observe_every", parameters_.observe_every,
+                 "1 step or more is expected");
   }
 
   const Parameters& parameters() const noexcept { return parameters_; }
@@ -67,12 +74,12 @@ public:
   ///
   /// @param motion    from Motion::at_rest() or an earlier run; after an exception it is that of the last
   ///                  whole step, except after a blow-up, which leaves nothing of use
-  /// @param observer  bool(const Step&), called after every step; false ends the run
+  /// @param observer  bool(const Step&), called after every step, or every observe_every-th; false ends the run
   /// @throws          core::InvalidInput for a motion that does not fit, is not finite, or goes on under other
   ///                  constraints than it began with; core::Interrupted;
   ///                  core::NotReached when the run blows up, with the step and the likely cause
-  /// @complexity      O(bonds) a step; one field of the body's size, allocated once (one more for forces that
-  ///                  are not evaluated blockwise, two more with beta)
+  /// @complexity      O(bonds) a step; no field beside those of the motion (one for forces that are not evaluated
+  ///                  blockwise, two more with beta)
   template <InternalForces Forces, class Observer = NoObserver>
   Report run(const Problem<Forces>& problem, particles::Motion& motion, std::uint64_t steps,
              core::ThreadPool& pool, Observer&& observer = {}, const core::Monitor& monitor = {}) const {
@@ -82,20 +89,27 @@ public:
     Workspace work(problem, parameters_.damping);
     if (motion.acceleration.empty())
       begin(problem, motion, work, pool);
-    else
-      predict(problem, motion, work, pool);
     Report report;
     auto last_report = start;
+    bool whole = true;
     while (report.steps < steps) {
-      step(problem, motion, work, pool);
+      const auto now = std::chrono::steady_clock::now();
+      const bool report_due = monitor.stop_requested() ||
+                              (monitor.listens() && now - last_report > std::chrono::milliseconds(200));
+      const bool observed = !std::is_same_v<std::remove_cvref_t<Observer>, NoObserver> &&
+                            (motion.step + 1) % parameters_.observe_every == 0;
+      if (whole)
+        drift(problem, motion, work, pool);
+      else
+        std::swap(motion.displacement, motion.acceleration);
+      whole = observed || report_due || report.steps + 1 == steps;
+      step(problem, motion, work, pool, whole);
       ++report.steps;
-      if (!observer(Step{motion, work.reaction})) {
+      if (observed && !observer(Step{motion, work.reaction})) {
         report.ending = Ending::observer;
         break;
       }
-      const auto now = std::chrono::steady_clock::now();
-      if (monitor.stop_requested() ||
-          (monitor.listens() && now - last_report > std::chrono::milliseconds(200))) {
+      if (report_due || (whole && monitor.stop_requested())) {
         last_report = now;
         monitor.report({"velocity Verlet", static_cast<double>(report.steps) / static_cast<double>(steps),
                         "step " + std::to_string(motion.step)});
@@ -107,43 +121,20 @@ public:
 
 private:
   using Field = particles::SpatialField<>;
-  using Four = Eigen::Array<double, 4, 1>; ///< three components and a zero
-
-  /// Components `first` to `first` + 3.
-  static Eigen::Map<Four, Eigen::Aligned32> four(particles::Spatial<>& spatial, int first) {
-    return Eigen::Map<Four, Eigen::Aligned32>(spatial.component + first);
-  }
-  static Eigen::Map<const Four, Eigen::Aligned32> four(const particles::Spatial<>& spatial, int first) {
-    return Eigen::Map<const Four, Eigen::Aligned32>(spatial.component + first);
-  }
+  using Sums = detail::StepSums;
 
   struct Workspace {
     template <class P>
-    Workspace(const P& problem, const Damping& damping)
-        : next(problem.forces.particle_count()), reaction(problem.constraints.size()) {
+    Workspace(const P& problem, const Damping& damping) : reaction(problem.constraints.size()) {
       if (damping.beta > 0) {
-        ahead.resize(next.size());
-        damped.resize(next.size());
+        ahead.resize(problem.forces.particle_count());
+        damped.resize(ahead.size());
       }
     }
-    Field next;                   ///< displacement of the coming step
     Field force;                  ///< internal forces, where they are not evaluated blockwise
     Field ahead;                  ///< displacement + beta v*
     Field damped;                 ///< internal forces there
     std::vector<double> reaction; ///< [constraints]
-  };
-
-  /// Kinetic energy and powers, summed in block order.
-  struct Sums {
-    double kinetic = 0;
-    double dissipated_power = 0; ///< lost to damping
-    double external_power = 0;   ///< of loads and reactions
-    Sums& operator+=(const Sums& other) {
-      kinetic += other.kinetic;
-      dissipated_power += other.dissipated_power;
-      external_power += other.external_power;
-      return *this;
-    }
   };
 
   template <class P>
@@ -182,17 +173,25 @@ private:
                                      (constraint.rate * constraint.rate - velocity * velocity);
       velocity = constraint.rate;
     }
-    accelerate(problem, motion, work, pool, 0);
+    if (parameters_.damping.beta > 0)
+      core::parallel_for(pool, motion.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+          for (int c = 0; c < 8; ++c)
+            work.ahead[i].component[c] = motion.displacement[i].component[c] +
+                                         parameters_.damping.beta * motion.velocity[i].component[c];
+      });
+    accelerate(problem, motion, work, pool, {.advance = 0, .whole = true});
   }
 
+  /// Forces, acceleration and velocity at the displacement; `whole` as in Stage.
   template <class P>
-  void step(const P& problem, particles::Motion& motion, Workspace& work, core::ThreadPool& pool) const {
+  void step(const P& problem, particles::Motion& motion, Workspace& work, core::ThreadPool& pool,
+            bool whole) const {
     const double dt = parameters_.time_step;
     motion.time += dt;
     ++motion.step;
-    std::swap(motion.displacement, work.next);
     const particles::PathEnergy before = motion.energy;
-    const double kinetic = accelerate(problem, motion, work, pool, 0.5 * dt);
+    const double kinetic = accelerate(problem, motion, work, pool, {.advance = 0.5 * dt, .whole = whole});
     motion.energy.external_work += 0.5 * dt * (before.external_power + motion.energy.external_power);
     motion.energy.dissipated += 0.5 * dt * (before.dissipated_power + motion.energy.dissipated_power);
     const double given = std::abs(motion.energy.initial) + std::abs(motion.energy.external_work) +
@@ -201,15 +200,21 @@ private:
       blow_up(problem, motion, kinetic);
   }
 
-  /// Acceleration and velocity at the displacement, and the displacement of the coming step, in one pass over the
-  /// bonds and particles. The velocity comes in `advance` seconds old, with the acceleration it had then: that is
-  /// how a step is split, half before the forces and half after. Returns the kinetic energy.
+  /// Where in a step an evaluation of forces stands.
+  struct Stage {
+    double advance; ///< s, by which the velocity is behind the displacement
+    /// Leave velocity and acceleration at the displacement's time. Else go on at once: leave the velocity of the coming
+    /// half step and, in the acceleration's place, the coming displacement.
+    bool whole;
+  };
+
+  /// One pass over the bonds and particles. Returns the kinetic energy.
   template <class P>
   double accelerate(const P& problem, particles::Motion& motion, Workspace& work, core::ThreadPool& pool,
-                    double advance) const {
+                    const Stage& stage) const {
     if (parameters_.damping.beta > 0)
-      damp_stiffness(problem, motion, work, pool, advance);
-    const BlockStep<P> use{problem, motion, work, parameters_, advance};
+      problem.forces.evaluate(work.ahead, work.damped, pool);
+    const BlockStep<P> use{problem, motion, work, parameters_, stage};
     const Sums sums = with_forces(problem.forces, motion.displacement, work.force, pool, use);
     motion.energy.external_power = sums.external_power;
     motion.energy.dissipated_power = sums.dissipated_power;
@@ -223,46 +228,31 @@ private:
     particles::Motion& motion;
     Workspace& work;
     const Parameters& parameters;
-    double advance;
+    Stage stage;
 
     Sums operator()(std::size_t begin, std::size_t end, const particles::Spatial<>* force) const {
-      Sums sums = move_freely(begin, end, force);
+      const bool beta = parameters.damping.beta > 0;
+      Sums sums = detail::step_block({.count = end - begin,
+                                      .force = force,
+                                      .damped = beta ? work.damped.data() + begin : nullptr,
+                                      .load = problem.load ? problem.load->data() + begin : nullptr,
+                                      .mass = problem.inertia.mass.data() + begin,
+                                      .moment = problem.inertia.moment.data() + begin,
+                                      .displacement = motion.displacement.data() + begin,
+                                      .velocity = motion.velocity.data() + begin,
+                                      .next = motion.acceleration.data() + begin,
+                                      .ahead = beta ? work.ahead.data() + begin : nullptr,
+                                      .time_step = parameters.time_step,
+                                      .advance = stage.advance,
+                                      .alpha = parameters.damping.alpha,
+                                      .beta = parameters.damping.beta,
+                                      .whole = stage.whole});
       for (std::size_t k = first_constraint(problem, begin); k < problem.constraints.size(); ++k) {
         if (problem.constraints.list()[k].particle >= end)
           break;
         impose(k, force[problem.constraints.list()[k].particle - begin], sums);
       }
       return sums;
-    }
-
-    /// All degrees of freedom, as if none were prescribed.
-    Sums move_freely(std::size_t begin, std::size_t end, const particles::Spatial<>* force) const {
-      const double alpha = parameters.damping.alpha, dt = parameters.time_step;
-      const double implicit = 1 / (1 + alpha * advance);
-      Four twice_kinetic = Four::Zero(), viscous_power = Four::Zero(), load_power = Four::Zero();
-      for (std::size_t i = begin; i < end; ++i)
-        for (const int first : {0, 4}) { // translation, rotation
-          const double mass = first == 0 ? problem.inertia.mass[i] : problem.inertia.moment[i];
-          const Four elastic = four(force[i - begin], first);
-          const Four viscous =
-              parameters.damping.beta > 0 ? Four(four(work.damped[i], first) - elastic) : Four::Zero();
-          const Four load = problem.load ? Four(four((*problem.load)[i], first)) : Four::Zero();
-          const Four free_acceleration = (elastic + viscous + load) * (1 / mass);
-          const Four halfway =
-              four(motion.velocity[i], first) + advance * four(motion.acceleration[i], first);
-          const Four velocity = (halfway + advance * free_acceleration) * implicit;
-          const Four acceleration = free_acceleration - alpha * velocity;
-          four(motion.velocity[i], first) = velocity;
-          four(motion.acceleration[i], first) = acceleration;
-          four(work.next[i], first) =
-              four(motion.displacement[i], first) + dt * (velocity + (0.5 * dt) * acceleration);
-          twice_kinetic += mass * velocity.square();
-          viscous_power += viscous * velocity;
-          load_power += load * velocity;
-        }
-      return {.kinetic = 0.5 * twice_kinetic.sum(),
-              .dissipated_power = alpha * twice_kinetic.sum() - viscous_power.sum(),
-              .external_power = load_power.sum()};
     }
 
     /// Prescribed degree of freedom `k`: what was booked for it as if it were free is replaced.
@@ -273,14 +263,17 @@ private:
       const double elastic = force[dof];
       const double viscous = parameters.damping.beta > 0 ? work.damped[particle][dof] - elastic : 0;
       const double load = problem.load ? (*problem.load)[particle][dof] : 0;
-      double& velocity = motion.velocity[particle][dof];
+      const double velocity = detail::velocity_after(rate, (elastic + viscous + load) * (1 / mass),
+                                                     stage.advance, 1 / (1 + alpha * stage.advance));
       const double gained = rate * rate - velocity * velocity;
       sums.kinetic += 0.5 * mass * gained;
       sums.dissipated_power += alpha * mass * gained - viscous * (rate - velocity);
       sums.external_power += load * (rate - velocity);
-      velocity = rate;
-      motion.acceleration[particle][dof] = 0;
-      work.next[particle][dof] = rate * (motion.time + parameters.time_step);
+      motion.velocity[particle][dof] = rate;
+      const double next = rate * (motion.time + parameters.time_step);
+      motion.acceleration[particle][dof] = stage.whole ? 0 : next;
+      if (!stage.whole && parameters.damping.beta > 0)
+        work.ahead[particle][dof] = next + parameters.damping.beta * rate;
       work.reaction[k] = alpha * mass * rate - elastic - viscous - load;
       sums.external_power += work.reaction[k] * rate;
     }
@@ -301,36 +294,26 @@ private:
     }
   }
 
-  /// Forces at the displacement + beta v*, v* the velocity of the half step advanced to the whole one.
+  /// From a whole step on: the velocity of the coming half step and the coming displacement.
   template <class P>
-  void damp_stiffness(const P& problem, const particles::Motion& motion, Workspace& work,
-                      core::ThreadPool& pool, double advance) const {
-    const double beta = parameters_.damping.beta;
+  void drift(const P& problem, particles::Motion& motion, Workspace& work, core::ThreadPool& pool) const {
+    const double dt = parameters_.time_step, beta = parameters_.damping.beta;
     core::parallel_for(pool, motion.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
         for (int c = 0; c < 8; ++c) {
-          const double gain = advance * motion.acceleration[i].component[c];
-          work.ahead[i].component[c] =
-              motion.displacement[i].component[c] + beta * (motion.velocity[i].component[c] + gain + gain);
+          const double gain = 0.5 * dt * motion.acceleration[i].component[c];
+          double &u = motion.displacement[i].component[c], &v = motion.velocity[i].component[c];
+          v += gain;
+          u += dt * v;
+          if (beta > 0)
+            work.ahead[i].component[c] = u + beta * (v + gain);
         }
     });
-    problem.forces.evaluate(work.ahead, work.damped, pool);
-  }
-
-  /// The displacement of the coming step of a motion that is resumed, as accelerate() left it.
-  template <class P>
-  void predict(const P& problem, const particles::Motion& motion, Workspace& work,
-               core::ThreadPool& pool) const {
-    const double dt = parameters_.time_step;
-    core::parallel_for(pool, motion.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        for (int c = 0; c < 8; ++c)
-          work.next[i].component[c] =
-              motion.displacement[i].component[c] +
-              dt * (motion.velocity[i].component[c] + 0.5 * dt * motion.acceleration[i].component[c]);
-    });
-    for (const auto& constraint : problem.constraints.list())
-      work.next[constraint.particle][constraint.dof] = constraint.rate * (motion.time + dt);
+    for (const auto& [particle, dof, rate] : problem.constraints.list()) {
+      motion.displacement[particle][dof] = rate * (motion.time + dt);
+      if (beta > 0)
+        work.ahead[particle][dof] = motion.displacement[particle][dof] + beta * rate;
+    }
   }
 
   /// Number in the list of the first constraint on particle `begin` or a later one.

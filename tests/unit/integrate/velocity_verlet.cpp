@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <limits>
 #include <numbers>
@@ -494,9 +495,9 @@ TEST_CASE("a free body damped on its masses loses its momentum at the rate of th
 }
 
 TEST_CASE("runs resume bit by bit, on any number of threads") {
-  // more particles than a block of the parallel loop, so that threads do share the work
-  Body body = lattice_body(14, 16, true);
-  REQUIRE(body.size() > core::block_size);
+  // more particles than a block of the parallel loop or of the bonds, so that threads do share the work
+  Body body = lattice_body(15, 16, true);
+  REQUIRE(body.size() > std::max(core::block_size, bond::detail::BlockedBonds<double>::block_size));
   body.constraints.add({static_cast<ParticleIndex>(body.size() - 1), 0, 0.3});
   body.load.resize(body.size());
   body.load[1000].linear() = Vec3(1, 2, 3);
@@ -548,6 +549,51 @@ TEST_CASE("runs resume bit by bit, on any number of threads") {
     CHECK(message == "velocity Verlet interrupted at 37 %: step 37");
     REQUIRE(motion.step == 37);
     verlet.run(body.problem(), motion, 63, one);
+    CHECK(same_bytes(motion, whole));
+  }
+  SUBCASE("observed now and then: the observer sees what it sees when it looks at every step") {
+    const auto at_every = [&](std::uint64_t every) {
+      auto parameters = verlet.parameters();
+      parameters.observe_every = every;
+      return VelocityVerlet(parameters);
+    };
+    std::vector<Motion> seen;
+    Motion motion = start;
+    at_every(1).run(body.problem(), motion, 100, one, [&](const Step& step) {
+      if (step.motion.step % 30 == 0)
+        seen.push_back(step.motion);
+      return true;
+    });
+    CHECK(same_bytes(motion, whole));
+    for (const int threads : {1, 3}) {
+      core::ThreadPool pool(threads);
+      motion = start;
+      std::size_t looks = 0;
+      at_every(30).run(body.problem(), motion, 100, pool, [&](const Step& step) {
+        CHECK(same_bytes(step.motion, seen.at(looks++)));
+        return true;
+      });
+      CHECK(looks == 3);
+      CHECK(same_bytes(motion, whole));
+    }
+  }
+  SUBCASE("interrupted at a step that nobody sees") {
+    Motion motion = start;
+    std::atomic<bool> stop = false;
+    auto parameters = verlet.parameters();
+    parameters.observe_every = 40;
+    const std::string message = message_of<core::Interrupted>([&] {
+      VelocityVerlet(parameters)
+          .run(
+              body.problem(), motion, 100, one,
+              [&](const Step&) {
+                stop = true;
+                return true;
+              },
+              core::Monitor([](const core::Progress&) {}, &stop));
+    });
+    CHECK(contains(message, "velocity Verlet interrupted at 40 %"));
+    verlet.run(body.problem(), motion, 100 - motion.step, one);
     CHECK(same_bytes(motion, whole));
   }
   SUBCASE("an observer that throws") {
@@ -606,6 +652,7 @@ TEST_CASE("bad parameters are refused") {
     CHECK(contains(message({1, {0, bad}}), "beta of the Rayleigh damping = " + core::to_text(bad)));
   }
   CHECK(message({1, {0, 0}}) == "nothing thrown");
+  CHECK(contains(message({1, {0, 0}, 0}), "observe_every = 0 is not accepted: 1 step or more is expected"));
 }
 
 TEST_CASE("problems and motions that do not fit are refused, before anything moves") {
