@@ -29,9 +29,12 @@ int main(int argc, char** argv) {
   app.add_option("--coordination", params.coordination, "Coordination number Z")->capture_default_str();
   examples::add_choice<Axis>(app, "--axis", params.axis, {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}},
                              "Axis of the tension");
-  examples::add_choice<rve::Method>(app, "--method", params.method,
-                                    {{"verlet", rve::Method::verlet}, {"static", rve::Method::statics}},
-                                    "The paper's explicit steps, or the equilibrium by multigrid");
+  examples::add_choice<rve::Method>(
+      app, "--method", params.method,
+      {{"verlet", rve::Method::verlet},
+       {"static", rve::Method::statics},
+       {"relaxation", rve::Method::relaxation}},
+      "The paper's explicit steps, or the equilibrium by multigrid or relaxation");
   app.add_option("--damping", params.damping_ratio, "Damping ratio of the first axial vibration")
       ->capture_default_str();
   using integrate::DensityScaling;

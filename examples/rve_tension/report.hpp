@@ -66,9 +66,11 @@ inline io::Results tabulate(const Params& params, const Result& result) {
       table.add({name + ".mass_factor", "", m.scaling.mass_factor});
       table.add({name + ".steps", "", static_cast<double>(m.motion.step)});
     } else {
-      table.add({name + ".solver.outer_iterations", "", static_cast<double>(m.outer_iterations)});
-      table.add({name + ".solver.relative_residual", "", m.residual});
-      table.add({name + ".solver.work", "K u", m.work});
+      table.add({name + (params.method == Method::statics ? ".solver.outer_iterations" : ".solver.steps"), "",
+                 static_cast<double>(m.solver.iterations)});
+      table.add({name + ".solver.relative_residual", "", m.solver.relative_residual});
+      table.add({name + ".solver.work", "K u", m.solver.work});
+      table.add({name + ".solver.time", "", m.solver.seconds, "s"});
     }
     table.add({name + ".strain", "eps_L", m.strain});
     const auto component = stress::statistics(m.stress, params.axis, params.axis);

@@ -46,8 +46,9 @@ inline std::vector<Material> paper_materials() {
 
 /// How the displacements are found; everything after is the same.
 enum class Method : std::uint8_t {
-  verlet,  ///< the paper's: explicit steps at constant velocity, averaged over time
-  statics, ///< the equilibrium itself, by multigrid
+  verlet,     ///< the paper's: explicit steps at constant velocity, averaged over time
+  statics,    ///< the equilibrium itself, by multigrid
+  relaxation, ///< the same by explicit steps with kinetic damping, which serve laws that are not linear too
 };
 
 struct Params {
@@ -101,9 +102,7 @@ struct MaterialResult {
   integrate::CriticalTimeStep critical; ///< before density scaling
   integrate::DensityScalingReport scaling;
   integrate::EnergyLedger energy; ///< at the end
-  int outer_iterations = 0;       ///< of the static solver
-  double residual = 0;            ///< relative, of the static solver
-  double work = 0;                ///< of the static solver, in applications of K
+  Equilibrium solver;             ///< of a static solver
   bool converged = false;
 };
 
@@ -322,10 +321,8 @@ inline MaterialResult pull(const Material& material, const Params& params, const
     const core::Monitor shown([&](const core::Progress& progress) {
       monitor.report({material.name, progress.fraction, progress.detail});
     });
-    const Equilibrium report = solve_equilibrium(problem, motion, pool, shown);
-    result.outer_iterations = report.iterations;
-    result.residual = report.relative_residual;
-    result.work = report.work;
+    result.solver = params.method == Method::statics ? solve_by_multigrid(problem, motion, pool, shown)
+                                                     : solve_by_relaxation(problem, motion, pool, shown);
     result.converged = true; // solve() throws where it does not
     const std::vector<double> reaction = integrate::static_reactions(problem, motion, pool);
     for (std::size_t c = 0; c < reaction.size(); ++c) // the work of a slow pull is half of force times way

@@ -1,22 +1,30 @@
 #pragma once
 
-// The static solver, compiled on its own: it takes as long as the rest of the example, and so runs beside it.
+// The solvers of statics, compiled on their own: they take as long as the rest of the example, and so run beside it.
 
 #include <cdem/bond/linear_forces.hpp>
 #include <cdem/integrate/integrator.hpp>
 
+#include <cstdint>
+
 namespace cdem::examples::rve_tension {
 
-/// What the static solver says of itself.
+/// What a solver of statics says of itself.
 struct Equilibrium {
-  int iterations = 0;           ///< outer iterations
+  std::uint64_t iterations = 0; ///< outer iterations of the multigrid, steps of the relaxation
   double relative_residual = 0; ///< recomputed at the end
   double work = 0;              ///< in applications of K to all particles
+  double seconds = 0;           ///< wall clock
 };
 
 /// The equilibrium at unit time, by integrate::StaticMultigrid to a relative residual of 1e-8.
-Equilibrium solve_equilibrium(const integrate::Problem<bond::LinearForces>& problem,
-                              particles::Motion& motion, core::ThreadPool& pool,
-                              const core::Monitor& monitor);
+Equilibrium solve_by_multigrid(const integrate::Problem<bond::LinearForces>& problem,
+                               particles::Motion& motion, core::ThreadPool& pool,
+                               const core::Monitor& monitor);
+
+/// The same by integrate::DynamicRelaxation.
+Equilibrium solve_by_relaxation(const integrate::Problem<bond::LinearForces>& problem,
+                                particles::Motion& motion, core::ThreadPool& pool,
+                                const core::Monitor& monitor);
 
 } // namespace cdem::examples::rve_tension
