@@ -4,6 +4,7 @@
 /// Near-neighbour lists that are renewed one sphere at a time.
 
 #include <cdem/packing/detail/cell_grid.hpp>
+#include <cdem/packing/detail/sphere_state.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +34,16 @@ public:
   const Shell& shell(ParticleIndex sphere) const { return shells_[sphere]; }
   const CellGrid& grid() const { return grid_; }
 
+  const SphereArray<Shell>& shells() const { return shells_; }
+
+  /// Asks for the memory of which of() and shell() are going to speak.
+  void fetch(ParticleIndex sphere) const {
+    __builtin_prefetch(&slices_[sphere]);
+    __builtin_prefetch(&shells_[sphere]);
+  }
+  /// The same for the list itself; reads its place.
+  void fetch_list(ParticleIndex sphere) const { __builtin_prefetch(entries_.data() + slices_[sphere].begin); }
+
   /// The spheres that `sphere` may meet.
   std::span<const ParticleIndex> of(ParticleIndex sphere) const {
     const Slice& slice = slices_[sphere];
@@ -40,7 +51,7 @@ public:
   }
 
   /// Makes all the lists anew. @param shells  [spheres], centres in the unit cube
-  void rebuild(std::vector<Shell> shells) {
+  void rebuild(SphereArray<Shell> shells) {
     shells_ = std::move(shells);
     grid_.clear();
     largest_ = 0;
@@ -125,7 +136,7 @@ private:
 
   /// Closes the holes that grown lists have left.
   void compact() {
-    std::vector<ParticleIndex> entries;
+    SphereArray<ParticleIndex> entries;
     entries.reserve(entries_.size() - unused_);
     for (Slice& slice : slices_) {
       const auto begin = static_cast<std::uint32_t>(entries.size());
@@ -138,9 +149,9 @@ private:
   }
 
   CellGrid grid_;                      ///< by the shells' centres
-  std::vector<Shell> shells_;          ///< [spheres]
-  std::vector<Slice> slices_;          ///< [spheres] where its list stands in `entries_`
-  std::vector<ParticleIndex> entries_; ///< the lists, each followed by spare room
+  SphereArray<Shell> shells_;          ///< [spheres]
+  SphereArray<Slice> slices_;          ///< [spheres] where its list stands in `entries_`
+  SphereArray<ParticleIndex> entries_; ///< the lists, each followed by spare room
   std::size_t unused_ = 0;             ///< entries that belong to no list any more
   double largest_ = 0;                 ///< no shell's radius is larger
   bool periodic_;
