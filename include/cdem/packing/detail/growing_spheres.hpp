@@ -108,13 +108,13 @@ public:
     }
     spheres_.skin = std::min(skin, listed_skin_);
     std::fill(spheres_.events.begin(), spheres_.events.end(), Event{});
+    SphereArray<Event> next(size());
     core::parallel_for(pool, size(), [&](std::size_t begin, std::size_t end) {
       std::vector<double> times;
-      SphereArray<Event> next(end - begin);
       for (std::size_t i = begin; i < end; ++i)
-        next[i - begin] = spheres_.own_next_event(static_cast<ParticleIndex>(i), 0, times);
-      std::copy(next.begin(), next.end(), spheres_.events.begin() + static_cast<std::ptrdiff_t>(begin));
+        next[i] = spheres_.next_event(static_cast<ParticleIndex>(i), 0, times);
     });
+    spheres_.events.swap(next);
     day_ = interval * static_cast<double>(events_per_window());
     open_calendar(0, pool);
   }

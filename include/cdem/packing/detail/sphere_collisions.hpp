@@ -119,9 +119,9 @@ public:
     predict(w, i);
   }
 
-  /// A sphere's next event, whatever the others may do before; the sphere is at time `now`.
-  Event own_next_event(ParticleIndex i, double now, std::vector<double>& times) const {
-    return next_event(i, now, times, [](ParticleIndex, double) { return true; });
+  /// A sphere's next event, if those of the others are as they are; the sphere is at time `now`.
+  Event next_event(ParticleIndex i, double now, std::vector<double>& times) const {
+    return find_next(i, now, times);
   }
 
   /// The room in which a sphere at time `now` may move; its centre is brought back into the cube.
@@ -267,32 +267,17 @@ private:
     w.sums.heat.add(work * std::max((w.end - w.now) * w.per_window, 0.0));
   }
 
-  /// @param accept  accept(j, time): whether sphere j has nothing before that time
-  template <class Accept>
-  Event next_event(ParticleIndex i, double now, std::vector<double>& times, Accept&& accept) const {
+  Event find_next(ParticleIndex i, double now, std::vector<double>& times) const {
     const Body& a = bodies[i];
     Event best = events[i];
     const std::span<const ParticleIndex> list = neighbours.of(i);
     if (times.size() < list.size() + 4)
       times.resize(2 * list.size() + 16);
     const Present present{now, scale_at(now), growth, periodic_};
-    if (!list.empty())
-      contact_times(bodies.data(), list, a, present, times.data());
-    for (;;) {
-      std::size_t first = 0;
-      double soonest = never;
-      for (std::size_t k = 0; k < list.size(); ++k)
-        if (times[k] < soonest || (times[k] == soonest && soonest < never && list[k] < list[first])) {
-          soonest = times[k];
-          first = k;
-        }
-      if (!(now + soonest < best.time))
-        break;
-      if (accept(list[first], now + soonest)) {
-        best = {now + soonest, list[first]};
-        break;
-      }
-      times[first] = never;
+    if (!list.empty()) {
+      const Soonest soonest = contact_times(bodies.data(), events.data(), list, a, present, times.data());
+      if (now + soonest.time < best.time)
+        best = {now + soonest.time, list[soonest.place]};
     }
     if (!periodic_ && near_walls_[i])
       for (ParticleIndex wall = 0; wall < 6; ++wall)
@@ -311,11 +296,13 @@ private:
 
   /// Finds a sphere's next event and takes a partner away from its former one.
   void predict(Worker& w, ParticleIndex i) {
-    const Event next = next_event(i, w.now, w.times, [&](ParticleIndex j, double time) {
-      if (w.turn == Worker::Turn::first)
-        touched[j] = w.now;
-      return time < events[j].time;
-    });
+    const Event next = find_next(i, w.now, w.times);
+    if (w.turn == Worker::Turn::first) {
+      const std::span<const ParticleIndex> list = neighbours.of(i);
+      for (std::size_t k = 0; k < list.size(); ++k)
+        if (w.now + w.times[k] <= next.time) // whose events were weighed
+          touched[list[k]] = w.now;
+    }
     if (!(next.time < events[i].time))
       return;
     schedule(w, i, next);
