@@ -144,29 +144,34 @@ public:
     near_walls_[i] = walls;
   }
 
-  /// Asks for the memory that appointments[k] and those after it are going to read.
+  /// Asks for the memory that the appointments after the k-th are going to read: in steps, since each place is known
+  /// from what was read at another.
   void fetch_ahead(const std::vector<Appointment>& appointments, std::size_t k) const {
-    if (k + 12 < appointments.size()) {
-      const ParticleIndex i = appointments[k + 12].sphere;
+    if (k + 24 < appointments.size()) {
+      const ParticleIndex i = appointments[k + 24].sphere;
       __builtin_prefetch(&events[i], 1);
       __builtin_prefetch(&bodies[i], 1);
       neighbours.fetch(i);
     }
-    if (k + 8 < appointments.size()) {
-      const ParticleIndex i = appointments[k + 8].sphere;
-      neighbours.fetch_list(i);
-      if (const ParticleIndex j = events[i].partner; is_sphere(j))
+    if (k + 16 < appointments.size()) {
+      const ParticleIndex i = appointments[k + 16].sphere;
+      neighbours.fetch_long(i);
+      if (const ParticleIndex j = events[i].partner; is_sphere(j) && j > i)
         neighbours.fetch(j);
     }
-    if (k + 4 < appointments.size()) {
-      const ParticleIndex i = appointments[k + 4].sphere;
-      fetch_surroundings(i);
-      if (const ParticleIndex j = events[i].partner; is_sphere(j))
-        neighbours.fetch_list(j);
+    if (k + 10 < appointments.size()) {
+      const ParticleIndex i = appointments[k + 10].sphere, j = events[i].partner;
+      if (!is_sphere(j) || j > i) { // else the partner's appointment does it
+        fetch_surroundings(i);
+        if (is_sphere(j))
+          neighbours.fetch_long(j);
+      }
     }
-    if (k + 2 < appointments.size())
-      if (const ParticleIndex j = events[appointments[k + 2].sphere].partner; is_sphere(j))
+    if (k + 6 < appointments.size()) {
+      const ParticleIndex i = appointments[k + 6].sphere, j = events[i].partner;
+      if (is_sphere(j) && j > i)
         fetch_surroundings(j);
+    }
   }
 
   SphereArray<Body> bodies;
