@@ -37,9 +37,8 @@ public:
     SphereArray<Event> events;
     SphereArray<Shell> shells;
     CollisionSums sums;
-    double scale = 0, growth = 0, energy = 0, skin = 0, listed_skin = never, day = 0;
+    double scale = 0, growth = 0, energy = 0, skin = 0, listed_skin = never, window = 0;
     std::uint64_t today = 0;
-    bool synchronised = true;
   };
 
   /// @param centres     in the unit cube, none closer than the sum of the radii
@@ -52,6 +51,21 @@ public:
     spheres_.scale = scale;
     for (std::size_t i = 0; i < size(); ++i)
       spheres_.bodies[i] = {centres[i], 0, velocities[i], sizes[i]};
+  }
+
+  /// Goes on from a state.
+  GrowingSpheres(State state, bool periodic, const core::ThreadPool& pool)
+      : spheres_(state.bodies.size(), periodic), sums_(state.sums), energy_(state.energy),
+        listed_skin_(state.listed_skin), window_(state.window), periodic_(periodic) {
+    spheres_.bodies = std::move(state.bodies);
+    spheres_.events = std::move(state.events);
+    spheres_.scale = state.scale;
+    spheres_.growth = state.growth;
+    spheres_.skin = state.skin;
+    for (ParticleIndex i = 0; i < size() && !periodic; ++i)
+      spheres_.note_walls(i, state.shells[i]);
+    spheres_.neighbours.rebuild(std::move(state.shells));
+    open_calendar(state.today, pool);
   }
 
   std::size_t size() const noexcept { return spheres_.bodies.size(); }
@@ -115,7 +129,7 @@ public:
         next[i] = spheres_.next_event(static_cast<ParticleIndex>(i), 0, times);
     });
     spheres_.events.swap(next);
-    day_ = interval * static_cast<double>(events_per_window());
+    window_ = interval * static_cast<double>(events_per_window());
     open_calendar(0, pool);
   }
   void begin_cycle(double growth, double skin, double interval) {
@@ -142,12 +156,11 @@ public:
     return run(events, final_scale, alone);
   }
 
-  /// The state between two calls of run(), or between synchronise() and begin_cycle().
+  /// The state between two calls of run().
   State state() const {
-    return {spheres_.bodies, spheres_.events, spheres_.neighbours.shells(),
-            sums_,           spheres_.scale,  spheres_.growth,
-            energy_,         spheres_.skin,   listed_skin_,
-            day_,            now_ > 0 ? spheres_.calendar.today() : 0, now_ == 0};
+    return {spheres_.bodies, spheres_.events, spheres_.neighbours.shells(), sums_,
+            spheres_.scale,  spheres_.growth, energy_,                      spheres_.skin,
+            listed_skin_,    window_,         spheres_.calendar.today()};
   }
 
 private:
@@ -166,7 +179,7 @@ private:
   /// Enters all the events, and cuts the spheres into zones.
   void open_calendar(std::uint64_t today, const core::ThreadPool& pool) {
     const std::size_t lanes = useful_threads(pool);
-    spheres_.calendar.restart(lanes, day_, size(), 2 * events_per_window(), today);
+    spheres_.calendar.restart(lanes, window_, size(), 2 * events_per_window(), today);
     now_ = spheres_.calendar.start_of_today();
     stuck_ = false;
     repeated_ = 0;
@@ -200,21 +213,26 @@ private:
 
   void pass_window(double end, core::ThreadPool& pool) {
     ++spheres_.window;
-    energy_at_start_ = energy_;
     open(alone_, Worker::Turn::alone, now_, end);
     alone_.sudden.clear();
     const std::size_t lanes = workers_.size();
-    if (lanes == 1)
-      collect(alone_, 0);
+    const bool shared = lanes > 1 && windows_alone_ == 0;
+    if (windows_alone_ > 0)
+      --windows_alone_;
+    if (!shared)
+      collect(alone_);
     else
       pool.for_each_block(lanes, [&](std::size_t lane) {
         open(workers_[lane], Worker::Turn::first, now_, end);
         workers_[lane].zone = first_zone(lane);
-        collect(workers_[lane], lane);
+        collect(workers_[lane]);
       });
+    if (shared)
+      for (const Worker& w : workers_)
+        alone_.leaving.insert(alone_.leaving.end(), w.leaving.begin(), w.leaving.end());
     renew_leaving();
-    if (lanes == 1 || !share(end, pool)) {
-      if (lanes > 1)
+    if (!shared || !share(end, pool)) {
+      if (shared)
         gather_due();
       std::sort(alone_.due.begin(), alone_.due.end());
       work_through(alone_);
@@ -238,7 +256,7 @@ private:
   }
 
   /// Takes today's appointments that are not out of date: those of the worker's zone, or all if it is alone.
-  void collect(Worker& w, std::size_t lane) {
+  void collect(Worker& w) {
     const auto take = [&](std::size_t from) {
       const std::vector<Appointment>& today = spheres_.calendar.today_of(from);
       for (std::size_t k = 0; k < today.size(); ++k) {
@@ -256,13 +274,10 @@ private:
     };
     for (std::size_t from = 0; from < workers_.size(); ++from)
       take(from);
-    (void)lane;
   }
 
   /// Spheres that would reach their shells in this window get new ones at its start, in the order of their numbers.
   void renew_leaving() {
-    for (const Worker& w : workers_)
-      alone_.leaving.insert(alone_.leaving.end(), w.leaving.begin(), w.leaving.end());
     if (alone_.leaving.empty())
       return;
     std::sort(alone_.leaving.begin(), alone_.leaving.end());
@@ -274,19 +289,21 @@ private:
   }
 
   void work_through(Worker& w) {
-    const std::uint64_t limit = 1000 + 64 * static_cast<std::uint64_t>(events_per_window());
-    for (std::size_t next = 0;;) {
-      if (w.sums.events > limit || w.conflict) {
-        w.conflict = true;
-        return;
-      }
-      const bool due = next < w.due.size();
-      if (!w.sudden.empty() && (!due || w.sudden.front() < w.due[next])) {
+    const std::uint64_t many = 1000 + 64 * static_cast<std::uint64_t>(events_per_window());
+    double looked = w.now;
+    std::uint64_t next_look = many;
+    for (std::size_t next = 0; !w.conflict;) {
+      if (w.sums.events > next_look) {
+        // Far more events than expected: does time pass at all? Threads leave that question to one of them.
+        w.conflict = w.turn != Worker::Turn::alone || (w.now - looked) * w.per_window < 1e-6;
+        looked = w.now;
+        next_look = w.sums.events + many;
+      } else if (!w.sudden.empty() && (next == w.due.size() || w.sudden.front() < w.due[next])) {
         const Appointment appointment = w.sudden.front();
         std::pop_heap(w.sudden.begin(), w.sudden.end(), SphereCollisions::later);
         w.sudden.pop_back();
         spheres_.handle(w, appointment);
-      } else if (due) {
+      } else if (next < w.due.size()) {
         spheres_.fetch_ahead(w.due, next);
         spheres_.handle(w, w.due[next++]);
       } else
@@ -297,7 +314,7 @@ private:
   /// Lets the threads share the window. @return  whether that went well; if not, nothing has changed
   bool share(double end, core::ThreadPool& pool) {
     const std::size_t lanes = workers_.size();
-    second_.resize(lanes);
+    const auto in_conflict = [](const Worker& w) { return w.conflict; };
     pool.for_each_block(lanes, [&](std::size_t lane) {
       Worker& w = workers_[lane];
       w.sudden.clear();
@@ -307,40 +324,47 @@ private:
       std::sort(w.due.begin(), w.due.end());
       work_through(w);
     });
-    const bool any = std::any_of(workers_.begin(), workers_.end(),
-                                 [](const Worker& w) { return w.conflict || !w.put_off.empty(); });
-    const bool bad = std::any_of(workers_.begin(), workers_.end(), [](const Worker& w) { return w.conflict; });
-    if (any && !bad)
+    bool bad = std::any_of(workers_.begin(), workers_.end(), in_conflict);
+    second_.resize(lanes);
+    if (!bad)
       pool.for_each_block(lanes, [&](std::size_t lane) {
         spheres_.calendar.close_today(lane);
         Worker& w = second_[lane];
         open(w, Worker::Turn::second, now_, end);
+        w.sudden.clear();
         w.lane = lane;
         w.zone = second_zone(lane);
-        w.sudden.clear();
-        for (const std::size_t from : {lane, (lane + 1) % lanes})
-          for (const Appointment& a : workers_[from].put_off)
+        for (const Worker& first : workers_)
+          for (const Appointment& a : first.put_off)
             if (w.zone.holds(a.sphere))
               w.due.push_back(a);
         std::sort(w.due.begin(), w.due.end());
         work_through(w);
       });
-    else
-      for (std::size_t lane = 0; lane < lanes; ++lane)
-        spheres_.calendar.close_today(lane);
-    if (bad || (any && std::any_of(second_.begin(), second_.end(), [](const Worker& w) { return w.conflict; }))) {
-      if (!bad)
-        put_back(second_);
+    if (!bad && std::any_of(second_.begin(), second_.end(), in_conflict)) {
+      put_back(second_);
+      bad = true;
+    }
+    note_trouble(bad);
+    if (bad) {
       put_back(workers_);
-      ++repeated_;
       return false;
     }
-    for (const Worker& w : workers_)
-      alone_.sums.add(w.sums);
-    if (any)
-      for (const Worker& w : second_)
-        alone_.sums.add(w.sums);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      alone_.sums.add(workers_[lane].sums);
+      alone_.sums.add(second_[lane].sums);
+    }
     return true;
+  }
+
+  /// If more than a fifth of the windows had to be repeated, sharing does not pay: a fluid, or few spheres.
+  void note_trouble(bool repeated) {
+    repeated_ += repeated ? 1U : 0U;
+    trouble_ = repeated ? trouble_ + 4 : std::max(trouble_ - 1, 0);
+    if (trouble_ > 16) {
+      trouble_ = 0;
+      windows_alone_ = 512;
+    }
   }
 
   void put_back(std::vector<Worker>& workers) {
@@ -353,10 +377,9 @@ private:
 
   /// All that is due in the window, for one worker.
   void gather_due() {
-    alone_.due.clear();
     for (const Worker& w : workers_)
       alone_.due.insert(alone_.due.end(), w.due.begin(), w.due.end());
-    alone_.sudden.clear();
+    alone_.sudden.clear(); // the workers have them
   }
 
   void close_window(double end) {
@@ -404,10 +427,11 @@ private:
   std::vector<Worker> workers_, second_;
   CollisionSums sums_;
   double now_ = 0;
-  double energy_ = 0, energy_at_start_ = 0; ///< kinetic, kept up to date
-  double listed_skin_ = never;              ///< skin at the last rebuild
-  double day_ = 1;                          ///< length of a window
+  double energy_ = 0;          ///< kinetic, kept up to date
+  double listed_skin_ = never; ///< skin at the last rebuild
+  double window_ = 1;          ///< length of a window
   std::uint64_t repeated_ = 0;
+  int trouble_ = 0, windows_alone_ = 0; ///< see note_trouble()
   bool stuck_ = false;
   bool periodic_;
 };
