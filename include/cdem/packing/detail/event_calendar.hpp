@@ -1,136 +1,103 @@
 #pragma once
 
 /// @file
-/// Priority queue of an event-driven simulation: one next event a sphere, found and changed in constant time.
+/// Events of an event-driven simulation, kept by the day on which they fall.
 
-#include <cdem/packing/detail/cell_grid.hpp>
+#include <cdem/packing/detail/sphere_state.hpp>
 
 #include <algorithm>
-#include <limits>
+#include <cstdint>
 #include <vector>
 
 namespace cdem::packing::detail {
 
-/// One event per sphere, sorted by time into days of equal length (a calendar queue, Brown 1988; Paul 2007).
+/// When a sphere asked to be looked at. Out of date, and to be passed over, if its event has changed since.
+struct Appointment {
+  double time;
+  ParticleIndex sphere;
+
+  /// The order in which events are handled.
+  friend bool operator<(const Appointment& a, const Appointment& b) {
+    return a.time < b.time || (a.time == b.time && a.sphere < b.sphere);
+  }
+};
+
+/// Appointments sorted by time into days of equal length (a calendar queue, Brown 1988). Nothing is taken out when an
+/// event changes: a new appointment is written at the end of its day, and the old one is found out of date when its
+/// day comes. So nothing is read to write, and a day is read from one end to the other.
 ///
-/// A day holds about one event, so that the earliest is found by a look at one or two. Events beyond the last
-/// day of the year wait in one more list and are sorted in when the year is over.
-/// @complexity  constant time per schedule() and, on average, per earliest(); 32 bytes a sphere
+/// The calendar has several lanes, one for each thread that writes. Days of later years lie among those of this year.
+/// @complexity  constant time per add(); about four appointments of 16 bytes a sphere
 class EventCalendar {
 public:
-  static constexpr double never = std::numeric_limits<double>::infinity();
-
-  explicit EventCalendar(std::size_t spheres) : events_(spheres) {
+  /// Starts without appointments. A year is long enough for nearly all events to fall into it.
+  /// @param day     length of a day        @param spheres_per_day  spheres that have an event in a day
+  /// @param today   number of the first day
+  void restart(std::size_t lanes, double day, std::size_t spheres, std::size_t spheres_per_day,
+               std::uint64_t today) {
+    days_per_time_ = 1 / day;
+    day_ = day;
     std::size_t days = 16;
-    while (days < 2 * spheres)
+    while (days * spheres_per_day < 4 * spheres)
       days *= 2;
-    first_.assign(days + 1, no_sphere);
-  }
-
-  /// Starts at time 0 with every sphere's event at `never`.
-  /// @param interval  expected time between two events of the whole system: the length of a day
-  void restart(double interval) {
-    days_per_time_ = 1 / interval;
-    new_year_ = 0;
-    today_ = 0;
-    std::fill(first_.begin(), first_.end(), no_sphere);
-    for (ParticleIndex sphere = 0; sphere < events_.size(); ++sphere) {
-      events_[sphere].time = never;
-      events_[sphere].partner = no_sphere;
-      link(sphere);
+    if (lanes_.size() != lanes || days != days_) {
+      lanes_.clear();
+      lanes_.resize(lanes);
     }
-  }
-
-  double time(ParticleIndex sphere) const { return events_[sphere].time; }
-  ParticleIndex partner(ParticleIndex sphere) const { return events_[sphere].partner; }
-
-  /// Changes a sphere's event and leaves its time.
-  void set_partner(ParticleIndex sphere, ParticleIndex partner) { events_[sphere].partner = partner; }
-
-  /// Replaces a sphere's event; the time is not before that of the last earliest().
-  void schedule(ParticleIndex sphere, double time, ParticleIndex partner) {
-    unlink(sphere);
-    events_[sphere].time = time;
-    events_[sphere].partner = partner;
-    link(sphere);
-  }
-
-  /// Sphere of the earliest event, which stays in the calendar.
-  ParticleIndex earliest() {
-    for (;;) {
-      for (; today_ < late(); ++today_)
-        if (first_[today_] != no_sphere)
-          return earliest_of(first_[today_]);
-      const ParticleIndex sphere = earliest_of(first_[late()]);
-      if (events_[sphere].time == never)
-        return sphere;
-      start_year(events_[sphere].time);
+    days_ = days;
+    for (Lane& lane : lanes_) {
+      lane.days.resize(days);
+      for (auto& appointments : lane.days)
+        appointments.clear();
     }
+    today_ = today;
   }
+
+  std::size_t lanes() const noexcept { return lanes_.size(); }
+  std::uint64_t today() const noexcept { return today_; }
+  double start_of_today() const { return day_ * static_cast<double>(today_); }
+  double end_of_today() const { return day_ * static_cast<double>(today_ + 1); }
+
+  /// Enters an appointment after today.
+  void add_later(std::size_t lane, const Appointment& appointment) {
+    enter(lane, appointment, today_ + 1);
+  }
+  /// Enters an appointment today or later, between two days' work.
+  void add(std::size_t lane, const Appointment& appointment) { enter(lane, appointment, today_); }
+
+  /// Today's appointments in a lane, with some of later years.
+  const std::vector<Appointment>& today_of(std::size_t lane) const {
+    return lanes_[lane].days[today_ & (days_ - 1)];
+  }
+
+  /// Takes today's appointments out of a lane.
+  void close_today(std::size_t lane) {
+    auto& appointments = lanes_[lane].days[today_ & (days_ - 1)];
+    const double end = end_of_today();
+    std::erase_if(appointments, [end](const Appointment& a) { return a.time < end; });
+  }
+  void next_day() { ++today_; }
 
 private:
-  struct Event {
-    double time;
-    ParticleIndex partner;
-    ParticleIndex next, previous; ///< others of its day
-    std::uint32_t day;
+  struct alignas(64) Lane {
+    std::vector<std::vector<Appointment>> days;
   };
 
-  std::uint32_t late() const { return static_cast<std::uint32_t>(first_.size() - 1); }
-
-  std::uint32_t day_of(double time) const {
-    const double day = (time - new_year_) * days_per_time_;
-    if (!(day < static_cast<double>(late())))
-      return late();
-    return std::max(today_, static_cast<std::uint32_t>(std::max(day, 0.0)));
+  void enter(std::size_t lane, const Appointment& appointment, std::uint64_t first) {
+    if (!(appointment.time < never))
+      return;
+    const double day = std::min(appointment.time * days_per_time_, 0x1p52);
+    auto number = static_cast<std::uint64_t>(day);
+    if (appointment.time >= day_ * static_cast<double>(number + 1)) // by a rounding
+      ++number;
+    number = std::max(number, first);
+    lanes_[lane].days[number & (days_ - 1)].push_back(appointment);
   }
 
-  void link(ParticleIndex sphere) {
-    Event& event = events_[sphere];
-    event.day = day_of(event.time);
-    ParticleIndex& first = first_[event.day];
-    event.next = first;
-    event.previous = no_sphere;
-    if (first != no_sphere)
-      events_[first].previous = sphere;
-    first = sphere;
-  }
-
-  void unlink(ParticleIndex sphere) {
-    const Event& event = events_[sphere];
-    if (event.next != no_sphere)
-      events_[event.next].previous = event.previous;
-    if (event.previous != no_sphere)
-      events_[event.previous].next = event.next;
-    else
-      first_[event.day] = event.next;
-  }
-
-  ParticleIndex earliest_of(ParticleIndex sphere) const {
-    ParticleIndex best = sphere;
-    for (sphere = events_[sphere].next; sphere != no_sphere; sphere = events_[sphere].next)
-      if (events_[sphere].time < events_[best].time)
-        best = sphere;
-    return best;
-  }
-
-  void start_year(double time) {
-    new_year_ = time;
-    today_ = 0;
-    ParticleIndex sphere = first_[late()];
-    first_[late()] = no_sphere;
-    while (sphere != no_sphere) {
-      const ParticleIndex next = events_[sphere].next;
-      link(sphere);
-      sphere = next;
-    }
-  }
-
-  std::vector<Event> events_;        ///< [spheres]
-  std::vector<ParticleIndex> first_; ///< [days + 1] an event of the day; the last list holds the later years
-  double days_per_time_ = 1;
-  double new_year_ = 0; ///< time at which the first day begins
-  std::uint32_t today_ = 0;
+  std::vector<Lane> lanes_;
+  std::size_t days_ = 0; ///< of a year, a power of two
+  double day_ = 1, days_per_time_ = 1;
+  std::uint64_t today_ = 0;
 };
 
 } // namespace cdem::packing::detail

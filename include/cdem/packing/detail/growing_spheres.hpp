@@ -1,11 +1,10 @@
 #pragma once
 
 /// @file
-/// Event-driven dynamics of hard spheres whose radii grow.
+/// Event-driven dynamics of hard spheres whose radii grow, on one thread or several.
 
-#include <cdem/packing/detail/cell_grid.hpp>
-#include <cdem/packing/detail/event_calendar.hpp>
-#include <cdem/packing/detail/near_neighbours.hpp>
+#include <cdem/core/parallel.hpp>
+#include <cdem/packing/detail/sphere_collisions.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,431 +15,424 @@
 
 namespace cdem::packing::detail {
 
-/// How two growing spheres near each other: after the time t their centres' distance squared less the sum of their
-/// radii squared is a t^2 + 2 b t + c.
-struct Approach {
-  double a, b, c;
-
-  /// @param d  from one centre to the other      @param w  rate of d
-  /// @param S  sum of the radii                  @param G  rate of S, not negative
-  Approach(const Vec3& d, const Vec3& w, double S, double G)
-      : a(w.squaredNorm() - G * G), b(d.dot(w) - S * G), c(d.squaredNorm() - S * S) {}
-
-  /// Time until they touch, the smallest root t >= 0 at which the surfaces approach, written without cancellation;
-  /// infinity if there is none.
-  ///
-  /// Spheres that touch or overlap by rounding (c <= 0) collide at once if they approach (b < 0), and are let go if
-  /// they part.
-  double time_to_contact() const {
-    const double discriminant = b * b - a * c;
-    const double root = std::sqrt(std::max(discriminant, 0.0));
-    if (b < 0) {
-      const double time = std::max(c, 0.0) / (root - b);
-      return discriminant >= 0 || c <= 0 ? time : EventCalendar::never;
-    }
-    // The surfaces part; they meet again only if growth outruns them.
-    return a < 0 ? (b + root) / -a : EventCalendar::never;
-  }
-};
-
-/// Time until a growing sphere reaches its shell from inside; infinity if it never does.
-///
-/// Smallest t > 0 at which |y + v t| = room - g t.
-/// @param y     from the shell's centre to the sphere's     @param v  rate of y
-/// @param room  the shell's radius minus the sphere's       @param g  rate of the sphere's radius, not negative
-inline double time_to_shell(const Vec3& y, const Vec3& v, double room, double g) {
-  const double a = v.squaredNorm() - g * g;
-  const double b = y.dot(v) + room * g;
-  const double c = y.squaredNorm() - room * room;
-  if (c >= 0 || room <= 0)
-    return 0;
-  const double root = std::sqrt(std::max(b * b - a * c, 0.0));
-  if (b > 0)
-    return -c / (b + root);
-  return a > 0 ? (root - b) / a : EventCalendar::never;
-}
-
-/// Sums over the collisions of a period, from which its pressure follows.
-struct CollisionSums {
-  std::uint64_t events = 0;     ///< collisions, renewals of lists and second looks
-  std::uint64_t collisions = 0; ///< with spheres and walls
-  double duration = 0;
-  double virial = 0; ///< sum of exchanged momentum times distance of contact
-  double action = 0; ///< integral of the kinetic energy over time
-
-  /// Reduced pressure PV/(NkT) = 1 + virial/(2 integral of E_kin dt), the virial theorem with NkT = 2 E_kin/3; each
-  /// exchange of momentum J counts J times the distance between the centres, or J times the radius at a wall.
-  /// Infinity if no time has passed.
-  double reduced_pressure() const { return 1 + virial / (2 * action); }
-
-  friend CollisionSums operator+(CollisionSums a, const CollisionSums& b) {
-    a.events += b.events;
-    a.collisions += b.collisions;
-    a.duration += b.duration;
-    a.virial += b.virial;
-    a.action += b.action;
-    return a;
-  }
-};
-
-/// Notices that time has come to a standstill: rounding near contact can make a few spheres collide again and again
-/// without time passing.
-///
-/// A cycle has a fixed number of events, and the time it takes shrinks slowly. One that takes less than a thousandth of
-/// the last sound cycle's time hesitates (the caller shrinks the radii by a rounding or two and tries again); after
-/// twenty in a row the system is stalled.
-class StallWatch {
-public:
-  enum class Verdict : std::uint8_t { advances, hesitates, stalled };
-
-  /// @param duration  time that passed in the cycle
-  Verdict judge(double duration) {
-    if (duration > 1e-3 * sound_duration_) {
-      sound_duration_ = duration;
-      hesitations_ = 0;
-      return Verdict::advances;
-    }
-    return ++hesitations_ < 20 ? Verdict::hesitates : Verdict::stalled;
-  }
-
-private:
-  double sound_duration_ = 0;
-  int hesitations_ = 0;
-};
-
 /// Hard spheres of equal mass in the unit cube, radius_i(t) = size_i * scale(t), scale growing linearly in time.
 ///
-/// Each sphere has a local time: an event moves only the spheres it concerns (Lubachevsky 1991). A sphere knows its
-/// next event alone: a collision, the moment it reaches its shell (its list is renewed), or a second look, when the
-/// partner of its collision has been hit by another before. Time starts at 0 in every cycle, so that its resolution
-/// follows the shrinking gaps.
+/// Each sphere has a local time: an event moves only the spheres it concerns (Lubachevsky 1991). Time starts at 0 in
+/// every cycle, so that its resolution follows the shrinking gaps.
 ///
 /// Collisions are elastic in the frame of the moving surfaces: the approach v_n - G of a pair turns into its
 /// opposite, so that spheres part faster than they grow and energy rises; begin_cycle() takes it out again.
+///
+/// Events are handled window by window, a window being a day of the calendar in which a small part of the spheres has
+/// an event. One thread handles them in the order of time. Several give the same bytes: each takes a zone of the cube
+/// and handles the events whose surroundings lie in it; those nearer to a border, and what may follow from them, are
+/// put off and handled after it in zones about the borders. An event that then finds a neighbour further in time than
+/// itself has been overtaken: the window is put back and handled by one thread. So the order in which events are
+/// handled is never one that could be told from the order of time.
 class GrowingSpheres {
 public:
+  /// What lasts from window to window. The same state goes on to the same bytes.
+  struct State {
+    SphereArray<Body> bodies;
+    SphereArray<Event> events;
+    SphereArray<Shell> shells;
+    CollisionSums sums;
+    double scale = 0, growth = 0, energy = 0, skin = 0, listed_skin = never, window = 0;
+    std::uint64_t today = 0;
+  };
+
   /// @param centres     in the unit cube, none closer than the sum of the radii
   /// @param sizes       radii at scale 1, mean 1/2: the scale is the mean diameter
   /// @param velocities  any unit; begin_cycle() scales them
   /// @param scale       to begin with
   GrowingSpheres(const std::vector<Vec3>& centres, const std::vector<double>& sizes,
                  const std::vector<Vec3>& velocities, double scale, bool periodic)
-      : bodies_(centres.size()), neighbours_(centres.size(), periodic), calendar_(centres.size()),
-        near_walls_(periodic ? 0 : centres.size(), 0), scale_(scale), periodic_(periodic) {
-    for (std::size_t i = 0; i < bodies_.size(); ++i)
-      bodies_[i] = {centres[i], velocities[i], 0, sizes[i]};
+      : spheres_(centres.size(), periodic), periodic_(periodic) {
+    spheres_.scale = scale;
+    for (std::size_t i = 0; i < size(); ++i)
+      spheres_.bodies[i] = {centres[i], 0, velocities[i], sizes[i]};
   }
 
-  std::size_t size() const noexcept { return bodies_.size(); }
-  /// Mean diameter at the time of the last event.
-  double scale() const noexcept { return scale_at(now_); }
+  /// Goes on from a state.
+  GrowingSpheres(State state, bool periodic, const core::ThreadPool& pool)
+      : spheres_(state.bodies.size(), periodic), sums_(state.sums), energy_(state.energy),
+        listed_skin_(state.listed_skin), window_(state.window), periodic_(periodic) {
+    spheres_.bodies = std::move(state.bodies);
+    spheres_.events = std::move(state.events);
+    spheres_.scale = state.scale;
+    spheres_.growth = state.growth;
+    spheres_.skin = state.skin;
+    for (ParticleIndex i = 0; i < size() && !periodic; ++i)
+      spheres_.note_walls(i, state.shells[i]);
+    spheres_.neighbours.rebuild(std::move(state.shells));
+    open_calendar(state.today, pool);
+  }
+
+  std::size_t size() const noexcept { return spheres_.bodies.size(); }
+  /// Mean diameter at the time reached.
+  double scale() const noexcept { return spheres_.scale_at(now_); }
   const CollisionSums& sums() const noexcept { return sums_; }
+  /// Whether the last run() gave up because time did not pass. Only synchronise() may follow.
+  bool stuck() const noexcept { return stuck_; }
+  /// Windows of this cycle that were done again by one thread.
+  std::uint64_t repeated_windows() const noexcept { return repeated_; }
 
   /// Centre of a sphere; valid after synchronise().
-  const Vec3& centre(std::size_t sphere) const { return bodies_[sphere].centre; }
-  const Vec3& velocity(std::size_t sphere) const { return bodies_[sphere].velocity; }
-  double radius(std::size_t sphere) const { return bodies_[sphere].size * scale(); }
+  const Vec3& centre(std::size_t sphere) const { return spheres_.bodies[sphere].centre; }
+  const Vec3& velocity(std::size_t sphere) const { return spheres_.bodies[sphere].velocity; }
+  double radius(std::size_t sphere) const { return spheres_.bodies[sphere].size * scale(); }
 
   /// Sum of v.v/2 over the spheres.
   double kinetic_energy() const {
-    return std::accumulate(bodies_.begin(), bodies_.end(), 0.0, [](double sum, const Body& body) {
-      return sum + body.velocity.squaredNorm() / 2;
-    });
+    return std::accumulate(
+        spheres_.bodies.begin(), spheres_.bodies.end(), 0.0,
+        [](double sum, const Body& body) { return sum + body.velocity.squaredNorm() / 2; });
   }
 
   /// Brings all spheres to the present and sets the clock to 0. run() cannot go on before the next begin_cycle().
   void synchronise() {
-    for (Body& body : bodies_) {
-      body.centre += body.velocity * (now_ - body.time);
+    for (Body& body : spheres_.bodies) {
+      body.advance(now_);
       body.time = 0;
     }
-    scale_ = scale_at(now_);
+    spheres_.scale = spheres_.scale_at(now_);
     now_ = 0;
   }
 
   /// Shrinks all radii by a relative amount, to get out of a place where rounding has the better of the dynamics.
-  void shrink(double relative) { scale_ *= 1 - relative; }
+  void shrink(double relative) { spheres_.scale *= 1 - relative; }
 
   /// Starts anew from the synchronised state with sums at zero.
   /// @param growth  rate of the mean diameter; the velocities are scaled to a thermal speed sqrt(kT/m) of 1
   /// @param skin    room that a sphere is given in a new shell. All lists are rebuilt, and the spheres sorted by
   ///                place, when it is below three quarters of the last one
   /// @param interval  expected time between two events of the whole system
-  void begin_cycle(double growth, double skin, double interval) {
+  void begin_cycle(double growth, double skin, double interval, core::ThreadPool& pool) {
     const double thermal = std::sqrt(2 * kinetic_energy() / (3 * static_cast<double>(size())));
-    for (Body& body : bodies_)
+    for (Body& body : spheres_.bodies)
       body.velocity /= thermal;
-    growth_ = growth;
+    spheres_.growth = growth;
     energy_ = 1.5 * static_cast<double>(size());
     sums_ = {};
     if (skin < 0.75 * listed_skin_) {
       listed_skin_ = skin;
-      skin_ = skin;
+      spheres_.skin = skin;
       sort_by_place();
       rebuild_lists();
     }
-    skin_ = std::min(skin, listed_skin_);
-    calendar_.restart(interval);
-    for (ParticleIndex i = 0; i < size(); ++i)
-      predict(i);
+    spheres_.skin = std::min(skin, listed_skin_);
+    std::fill(spheres_.events.begin(), spheres_.events.end(), Event{});
+    SphereArray<Event> next(size());
+    core::parallel_for(pool, size(), [&](std::size_t begin, std::size_t end) {
+      std::vector<double> times;
+      for (std::size_t i = begin; i < end; ++i)
+        next[i] = spheres_.next_event(static_cast<ParticleIndex>(i), 0, times);
+    });
+    spheres_.events.swap(next);
+    window_ = interval * static_cast<double>(events_per_window());
+    open_calendar(0, pool);
+  }
+  void begin_cycle(double growth, double skin, double interval) {
+    core::ThreadPool alone;
+    begin_cycle(growth, skin, interval, alone);
   }
 
-  /// Handles up to `events` events.
+  /// Handles whole windows until there were `events` events.
   /// @param final_scale  stops at the moment when the mean diameter is this; no event after it is handled
   /// @return             whether that moment was reached
-  bool run(std::uint64_t events, double final_scale) {
-    const double end = growth_ > 0 ? std::max((final_scale - scale_) / growth_, 0.0) : EventCalendar::never;
-    for (; events > 0; --events) {
-      const ParticleIndex sphere = calendar_.earliest();
-      const double time = calendar_.time(sphere);
-      if (!(time < end)) {
-        pass_time(end);
+  bool run(std::uint64_t events, double final_scale, core::ThreadPool& pool) {
+    const double growth = spheres_.growth;
+    const double final_time = growth > 0 ? std::max((final_scale - spheres_.scale) / growth, 0.0) : never;
+    for (const std::uint64_t enough = sums_.events + events; sums_.events < enough && !stuck_;) {
+      const double end = std::min(spheres_.calendar.end_of_today(), final_time);
+      pass_window(end, pool);
+      if (!stuck_ && end == final_time)
         return true;
-      }
-      pass_time(time);
-      ++sums_.events;
-      handle(sphere, calendar_.partner(sphere));
     }
     return false;
   }
+  bool run(std::uint64_t events, double final_scale) {
+    core::ThreadPool alone;
+    return run(events, final_scale, alone);
+  }
+
+  /// The state between two calls of run().
+  State state() const {
+    return {spheres_.bodies, spheres_.events, spheres_.neighbours.shells(), sums_,
+            spheres_.scale,  spheres_.growth, energy_,                      spheres_.skin,
+            listed_skin_,    window_,         spheres_.calendar.today()};
+  }
 
 private:
-  /// What predictions read of a sphere: one cache line.
-  struct alignas(64) Body {
-    Vec3 centre; ///< at its local time
-    Vec3 velocity;
-    double time; ///< its local time
-    double size; ///< radius at scale 1
-  };
-
-  // Partners that are no spheres.
-  static constexpr ParticleIndex second_look = no_sphere;
-  static constexpr ParticleIndex own_shell = no_sphere - 1;
-  static constexpr ParticleIndex first_wall = no_sphere - 8; ///< plus 2 axis, plus 1 for the upper wall
-
-  static constexpr bool is_sphere(ParticleIndex partner) { return partner < first_wall; }
-
-  double scale_at(double time) const { return scale_ + growth_ * time; }
-
-  void pass_time(double time) {
-    // A time a rounding before the last one is the same time.
-    const double step = std::max(time - now_, 0.0);
-    sums_.duration += step;
-    sums_.action += energy_ * step;
-    now_ = std::max(time, now_);
+  /// Events in a window: enough to share out among threads, and few enough for an event seldom to follow from another
+  /// in the same window.
+  std::size_t events_per_window() const {
+    return std::clamp<std::size_t>(static_cast<std::size_t>(std::sqrt(static_cast<double>(size()))), 8, 2048);
   }
 
-  void advance(Body& body) const {
-    body.centre += body.velocity * (now_ - body.time);
-    body.time = now_;
+  /// A zone is several spheres thick.
+  std::size_t useful_threads(const core::ThreadPool& pool) const {
+    const double thick = std::cbrt(static_cast<double>(size())) / 8;
+    return std::clamp<std::size_t>(static_cast<std::size_t>(thick), 1, static_cast<std::size_t>(pool.size()));
   }
 
-  /// Asks for the memory that predict() is going to read, so that its delays overlap.
-  void fetch_neighbours(ParticleIndex i) const {
-    for (const ParticleIndex j : neighbours_.of(i))
-      __builtin_prefetch(&bodies_[j]);
+  /// Enters all the events, and cuts the spheres into zones.
+  void open_calendar(std::uint64_t today, const core::ThreadPool& pool) {
+    const std::size_t lanes = useful_threads(pool);
+    spheres_.calendar.restart(lanes, window_, size(), 2 * events_per_window(), today);
+    now_ = spheres_.calendar.start_of_today();
+    stuck_ = false;
+    repeated_ = 0;
+    workers_.resize(lanes);
+    if (lanes > 1) {
+      spheres_.touched.assign(size(), -1.0);
+      spheres_.waiting.assign(size(), 0);
+      spheres_.window = 0;
+    }
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const std::size_t first = size() * lane / lanes, last = size() * (lane + 1) / lanes;
+      workers_[lane].lane = lane;
+      for (std::size_t i = first; i < last; ++i)
+        spheres_.calendar.add(lane, {spheres_.events[i].time, static_cast<ParticleIndex>(i)});
+    }
   }
 
-  void handle(ParticleIndex i, ParticleIndex partner) {
-    fetch_neighbours(i);
-    if (is_sphere(partner))
-      fetch_neighbours(partner);
-    calendar_.schedule(i, EventCalendar::never, second_look);
-    if (is_sphere(partner)) {
-      calendar_.schedule(partner, EventCalendar::never, second_look);
-      collide(bodies_[i], bodies_[partner]);
-      predict(i);
-      predict(partner);
+  Zone zone_from(std::size_t first, std::size_t last) const {
+    const std::size_t all = size();
+    return {static_cast<ParticleIndex>(first % all), static_cast<ParticleIndex>(last - first),
+            static_cast<ParticleIndex>(all)};
+  }
+  Zone first_zone(std::size_t lane) const {
+    return zone_from(size() * lane / workers_.size(), size() * (lane + 1) / workers_.size());
+  }
+  /// Half a zone further on.
+  Zone second_zone(std::size_t lane) const {
+    const std::size_t half = size() / (2 * workers_.size());
+    return zone_from(size() * lane / workers_.size() + half, size() * (lane + 1) / workers_.size() + half);
+  }
+
+  void pass_window(double end, core::ThreadPool& pool) {
+    ++spheres_.window;
+    open(alone_, Worker::Turn::alone, now_, end);
+    alone_.sudden.clear();
+    const std::size_t lanes = workers_.size();
+    const bool shared = lanes > 1 && windows_alone_ == 0;
+    if (windows_alone_ > 0)
+      --windows_alone_;
+    if (!shared)
+      collect(alone_);
+    else
+      pool.for_each_block(lanes, [&](std::size_t lane) {
+        open(workers_[lane], Worker::Turn::first, now_, end);
+        workers_[lane].zone = first_zone(lane);
+        collect(workers_[lane]);
+      });
+    if (shared)
+      for (const Worker& w : workers_)
+        alone_.leaving.insert(alone_.leaving.end(), w.leaving.begin(), w.leaving.end());
+    renew_leaving();
+    if (!shared || !share(end, pool)) {
+      if (shared)
+        gather_due();
+      std::sort(alone_.due.begin(), alone_.due.end());
+      work_through(alone_);
+      for (std::size_t lane = 0; lane < lanes; ++lane)
+        spheres_.calendar.close_today(lane);
+    }
+    close_window(end);
+  }
+
+  void open(Worker& w, Worker::Turn turn, double now, double end) const {
+    w.turn = turn;
+    w.now = now;
+    w.end = end;
+    w.per_window = end > now ? 1 / (end - now) : 0;
+    w.due.clear();
+    w.leaving.clear();
+    w.put_off.clear();
+    w.saved.clear();
+    w.sums = {};
+    w.conflict = false;
+  }
+
+  /// Takes today's appointments that are not out of date: those of the worker's zone, or all if it is alone.
+  void collect(Worker& w) {
+    const auto take = [&](std::size_t from) {
+      const std::vector<Appointment>& today = spheres_.calendar.today_of(from);
+      for (std::size_t k = 0; k < today.size(); ++k) {
+        if (k + 16 < today.size())
+          __builtin_prefetch(&spheres_.events[today[k + 16].sphere]);
+        const Appointment& a = today[k];
+        if (a.time >= w.end || (w.turn == Worker::Turn::first && !w.zone.holds(a.sphere)) ||
+            spheres_.events[a.sphere].time != a.time)
+          continue;
+        if (spheres_.events[a.sphere].partner == SphereCollisions::own_shell)
+          w.leaving.push_back(a.sphere);
+        else
+          w.due.push_back(a);
+      }
+    };
+    for (std::size_t from = 0; from < workers_.size(); ++from)
+      take(from);
+  }
+
+  /// Spheres that would reach their shells in this window get new ones at its start, in the order of their numbers.
+  void renew_leaving() {
+    if (alone_.leaving.empty())
       return;
+    std::sort(alone_.leaving.begin(), alone_.leaving.end());
+    alone_.leaving.erase(std::unique(alone_.leaving.begin(), alone_.leaving.end()), alone_.leaving.end());
+    for (const ParticleIndex i : alone_.leaving) {
+      ++alone_.sums.events;
+      spheres_.renew(alone_, i);
     }
-    if (partner == own_shell)
-      renew(i);
-    else if (partner != second_look)
-      bounce(bodies_[i], partner - first_wall);
-    predict(i);
   }
 
-  /// Two spheres of equal mass: the relative normal velocity v_n becomes 2 G - v_n.
-  void collide(Body& a, Body& b) {
-    advance(a);
-    advance(b);
-    Vec3 normal = b.centre - a.centre;
-    if (periodic_)
-      normal = nearest_image(normal);
-    normal.normalize();
-    const double size = a.size + b.size;
-    const double parting = size * growth_;
-    const double momentum = std::max(parting - normal.dot(b.velocity - a.velocity), 0.0);
-    a.velocity -= momentum * normal;
-    b.velocity += momentum * normal;
-    account(momentum, size * scale_at(now_), parting);
-  }
-
-  void bounce(Body& body, ParticleIndex wall) {
-    advance(body);
-    const int axis = static_cast<int>(wall / 2);
-    const double inward = wall % 2 == 0 ? 1 : -1;
-    const double parting = body.size * growth_;
-    const double momentum = std::max(2 * (parting - inward * body.velocity[axis]), 0.0);
-    body.velocity[axis] += inward * momentum;
-    account(momentum, body.size * scale_at(now_), parting);
-  }
-
-  void account(double momentum, double distance, double parting) {
-    ++sums_.collisions;
-    sums_.virial += momentum * distance;
-    energy_ += momentum * parting; // the work of the growing surfaces
-  }
-
-  Shell new_shell(ParticleIndex i) {
-    Body& body = bodies_[i];
-    if (periodic_)
-      for (int k = 0; k < 3; ++k)
-        body.centre[k] -= std::floor(body.centre[k]);
-    const Shell shell{body.centre, body.size * scale_at(now_) + skin_};
-    if (!periodic_) {
-      std::uint8_t walls = 0;
-      for (int k = 0; k < 3; ++k)
-        walls = static_cast<std::uint8_t>(walls | (shell.centre[k] < shell.radius) << 2 * k |
-                                          (1 - shell.centre[k] < shell.radius) << (2 * k + 1));
-      near_walls_[i] = walls;
+  void work_through(Worker& w) {
+    const std::uint64_t many = 1000 + 64 * static_cast<std::uint64_t>(events_per_window());
+    double looked = w.now;
+    std::uint64_t next_look = many;
+    for (std::size_t next = 0; !w.conflict;) {
+      if (w.sums.events > next_look) {
+        // Far more events than expected: does time pass at all? Threads leave that question to one of them.
+        w.conflict = w.turn != Worker::Turn::alone || (w.now - looked) * w.per_window < 1e-6;
+        looked = w.now;
+        next_look = w.sums.events + many;
+      } else if (!w.sudden.empty() && (next == w.due.size() || w.sudden.front() < w.due[next])) {
+        const Appointment appointment = w.sudden.front();
+        std::pop_heap(w.sudden.begin(), w.sudden.end(), SphereCollisions::later);
+        w.sudden.pop_back();
+        spheres_.handle(w, appointment);
+      } else if (next < w.due.size()) {
+        spheres_.fetch_ahead(w.due, next);
+        spheres_.handle(w, w.due[next++]);
+      } else
+        return;
     }
-    return shell;
   }
 
-  void renew(ParticleIndex i) {
-    advance(bodies_[i]);
-    neighbours_.renew(i, new_shell(i));
+  /// Lets the threads share the window. @return  whether that went well; if not, nothing has changed
+  bool share(double end, core::ThreadPool& pool) {
+    const std::size_t lanes = workers_.size();
+    const auto in_conflict = [](const Worker& w) { return w.conflict; };
+    pool.for_each_block(lanes, [&](std::size_t lane) {
+      Worker& w = workers_[lane];
+      w.sudden.clear();
+      for (const Appointment& a : alone_.sudden)
+        if (w.zone.holds(a.sphere))
+          w.due.push_back(a);
+      std::sort(w.due.begin(), w.due.end());
+      work_through(w);
+    });
+    bool bad = std::any_of(workers_.begin(), workers_.end(), in_conflict);
+    second_.resize(lanes);
+    if (!bad)
+      pool.for_each_block(lanes, [&](std::size_t lane) {
+        spheres_.calendar.close_today(lane);
+        Worker& w = second_[lane];
+        open(w, Worker::Turn::second, now_, end);
+        w.sudden.clear();
+        w.lane = lane;
+        w.zone = second_zone(lane);
+        for (const Worker& first : workers_)
+          for (const Appointment& a : first.put_off)
+            if (w.zone.holds(a.sphere))
+              w.due.push_back(a);
+        std::sort(w.due.begin(), w.due.end());
+        work_through(w);
+      });
+    if (!bad && std::any_of(second_.begin(), second_.end(), in_conflict)) {
+      put_back(second_);
+      bad = true;
+    }
+    note_trouble(bad);
+    if (bad) {
+      put_back(workers_);
+      return false;
+    }
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      alone_.sums.add(workers_[lane].sums);
+      alone_.sums.add(second_[lane].sums);
+    }
+    return true;
+  }
+
+  /// If more than a fifth of the windows had to be repeated, sharing does not pay: a fluid, or few spheres.
+  void note_trouble(bool repeated) {
+    repeated_ += repeated ? 1U : 0U;
+    trouble_ = repeated ? trouble_ + 4 : std::max(trouble_ - 1, 0);
+    if (trouble_ > 16) {
+      trouble_ = 0;
+      windows_alone_ = 512;
+    }
+  }
+
+  void put_back(std::vector<Worker>& workers) {
+    for (Worker& w : workers)
+      for (auto saved = w.saved.rbegin(); saved != w.saved.rend(); ++saved) {
+        spheres_.events[saved->sphere] = saved->event;
+        spheres_.bodies[saved->sphere] = saved->body;
+      }
+  }
+
+  /// All that is due in the window, for one worker.
+  void gather_due() {
+    for (const Worker& w : workers_)
+      alone_.due.insert(alone_.due.end(), w.due.begin(), w.due.end());
+    alone_.sudden.clear(); // the workers have them
+  }
+
+  void close_window(double end) {
+    const WindowSums& window = alone_.sums;
+    stuck_ = alone_.conflict;
+    const double reached = stuck_ ? alone_.now : end;
+    const double length = end - now_, passed = reached - now_;
+    sums_.events += window.events;
+    sums_.collisions += window.collisions;
+    sums_.duration += passed;
+    sums_.virial += window.virial.value() * spheres_.scale;
+    sums_.action += energy_ * passed + window.heat.value() * length - window.work.value() * (length - passed);
+    energy_ += window.work.value();
+    now_ = reached;
+    if (!stuck_ && reached == spheres_.calendar.end_of_today())
+      spheres_.calendar.next_day();
   }
 
   void rebuild_lists() {
-    std::vector<Shell> shells(size());
+    SphereArray<Shell> shells(size());
     for (ParticleIndex i = 0; i < size(); ++i)
-      shells[i] = new_shell(i);
-    neighbours_.rebuild(std::move(shells));
+      shells[i] = spheres_.new_shell(i, 0);
+    spheres_.neighbours.rebuild(std::move(shells));
   }
 
   /// Spheres that are near in space become near in memory.
   void sort_by_place() {
     std::vector<std::pair<std::size_t, ParticleIndex>> places(size());
     for (ParticleIndex i = 0; i < size(); ++i) {
-      Vec3 centre = bodies_[i].centre;
+      Vec3 centre = spheres_.bodies[i].centre;
       if (periodic_)
         for (int k = 0; k < 3; ++k)
           centre[k] -= std::floor(centre[k]);
-      places[i] = {neighbours_.grid().cell_of(centre), i};
+      places[i] = {spheres_.neighbours.grid().cell_of(centre), i};
     }
     std::sort(places.begin(), places.end());
-    std::vector<Body> sorted(size());
+    SphereArray<Body> sorted(size());
     for (std::size_t i = 0; i < size(); ++i)
-      sorted[i] = bodies_[places[i].second];
-    bodies_.swap(sorted);
+      sorted[i] = spheres_.bodies[places[i].second];
+    spheres_.bodies.swap(sorted);
   }
 
-  /// Finds a sphere's next event and takes a partner away from its former one.
-  void predict(ParticleIndex i) {
-    const Body& a = bodies_[i];
-    const Vec3 centre = a.centre + a.velocity * (now_ - a.time);
-    const double scale = scale_at(now_);
-    double best = calendar_.time(i);
-    ParticleIndex partner = second_look;
-
-    // In two passes without branches to guess: half of the neighbours part, but which half cannot be foreseen.
-    const std::span<const ParticleIndex> neighbours = neighbours_.of(i);
-    if (nearing_.size() < neighbours.size())
-      nearing_.resize(neighbours.size(), {{Vec3::Zero(), Vec3::Zero(), 0, 0}, no_sphere});
-    std::size_t count = 0;
-    for (const ParticleIndex j : neighbours) {
-      const Body& b = bodies_[j];
-      const Vec3 w = b.velocity - a.velocity;
-      const Vec3 apart = b.centre + b.velocity * (now_ - b.time) - centre;
-      const Vec3 d = periodic_ ? nearest_image(apart) : apart;
-      const double size = a.size + b.size;
-      // Written in place: a copy of values just stored one by one would have to wait for them.
-      nearing_[count].sphere = j;
-      Approach& approach = nearing_[count].approach;
-      approach = Approach(d, w, size * scale, size * growth_);
-      count += static_cast<std::size_t>((approach.b < 0) | (approach.a < 0));
-    }
-    for (std::size_t k = 0; k < count; ++k) {
-      const double time = now_ + nearing_[k].approach.time_to_contact();
-      if (time < best && time < calendar_.time(nearing_[k].sphere)) {
-        best = time;
-        partner = nearing_[k].sphere;
-      }
-    }
-    if (!periodic_ && near_walls_[i])
-      for (ParticleIndex wall = 0; wall < 6; ++wall)
-        if (near_walls_[i] >> wall & 1) {
-          const double time = now_ + time_to_wall(a, centre, wall, scale);
-          if (time < best) {
-            best = time;
-            partner = first_wall + wall;
-          }
-        }
-    const Shell& shell = neighbours_.shell(i);
-    const Vec3 y = centre - shell.centre;
-    const double room = shell.radius - a.size * scale;
-    const double shrinking = a.size * growth_;
-    if (!stays_inside(y, a.velocity, room, shrinking, best - now_)) {
-      const double time = now_ + time_to_shell(y, a.velocity, room, shrinking);
-      if (time < best) {
-        best = time;
-        partner = own_shell;
-      }
-    }
-    if (best < calendar_.time(i))
-      agree(i, partner, best);
-  }
-
-  /// Whether the sphere is inside its shell after `time`; then it has been all along, since a cone is convex.
-  static bool stays_inside(const Vec3& y, const Vec3& v, double room, double shrinking, double time) {
-    const double left = room - shrinking * time;
-    return left > 0 && (y + v * time).squaredNorm() < left * left;
-  }
-
-  double time_to_wall(const Body& body, const Vec3& centre, ParticleIndex wall, double scale) const {
-    const int axis = static_cast<int>(wall / 2);
-    const double distance = wall % 2 == 0 ? centre[axis] : 1 - centre[axis];
-    const double speed = wall % 2 == 0 ? body.velocity[axis] : -body.velocity[axis];
-    const double approach = body.size * growth_ - speed;
-    return approach > 0 ? std::max(distance - body.size * scale, 0.0) / approach : EventCalendar::never;
-  }
-
-  /// Enters the event of a sphere, and of its partner if that is a sphere; who had counted on either looks again.
-  void agree(ParticleIndex i, ParticleIndex partner, double time) {
-    leave_alone(i);
-    calendar_.schedule(i, time, partner);
-    if (is_sphere(partner)) {
-      leave_alone(partner);
-      calendar_.schedule(partner, time, i);
-    }
-  }
-
-  void leave_alone(ParticleIndex i) {
-    const ParticleIndex former = calendar_.partner(i);
-    if (is_sphere(former))
-      calendar_.set_partner(former, second_look);
-  }
-
-  struct Nearing {
-    Approach approach;
-    ParticleIndex sphere;
-  };
-
-  std::vector<Body> bodies_;
-  NearNeighbours neighbours_;
-  EventCalendar calendar_;
-  std::vector<std::uint8_t>
-      near_walls_; ///< [spheres] bit 2 axis (+ 1: upper) of each wall inside the shell; walled only
-  std::vector<Nearing> nearing_; ///< scratch of predict()
+  SphereCollisions spheres_;
+  Worker alone_;
+  std::vector<Worker> workers_, second_;
   CollisionSums sums_;
   double now_ = 0;
-  double scale_;                              ///< at time 0
-  double growth_ = 0;                         ///< of the scale
-  double energy_ = 0;                         ///< kinetic, kept up to date
-  double skin_ = 0;                           ///< room in a new shell
-  double listed_skin_ = EventCalendar::never; ///< skin at the last rebuild
+  double energy_ = 0;          ///< kinetic, kept up to date
+  double listed_skin_ = never; ///< skin at the last rebuild
+  double window_ = 1;          ///< length of a window
+  std::uint64_t repeated_ = 0;
+  int trouble_ = 0, windows_alone_ = 0; ///< see note_trouble()
+  bool stuck_ = false;
   bool periodic_;
 };
 

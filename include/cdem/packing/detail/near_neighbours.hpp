@@ -4,9 +4,12 @@
 /// Near-neighbour lists that are renewed one sphere at a time.
 
 #include <cdem/packing/detail/cell_grid.hpp>
+#include <cdem/packing/detail/sphere_state.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -23,24 +26,39 @@ struct Shell {
 ///
 /// While each of two spheres is inside its shell, they can only touch if the shells overlap; so a sphere's list holds
 /// everything it can meet, whatever the growth, until it reaches its own shell (Donev, Torquato, Stillinger 2005).
-/// @complexity  a renewal looks at the spheres of the surrounding cells; about 150 bytes a sphere near jamming
+/// @complexity  a renewal looks at the spheres of the surrounding cells; about 120 bytes a sphere near jamming
 class NearNeighbours {
 public:
   NearNeighbours(std::size_t spheres, bool periodic)
-      : grid_(spheres, cell_edge(spheres), periodic), shells_(spheres), slices_(spheres),
+      : grid_(spheres, cell_edge(spheres), periodic), shells_(spheres), lists_(spheres),
         periodic_(periodic) {}
 
   const Shell& shell(ParticleIndex sphere) const { return shells_[sphere]; }
   const CellGrid& grid() const { return grid_; }
 
+  const SphereArray<Shell>& shells() const { return shells_; }
+
+  /// Asks for the memory of shell() and of all but long lists.
+  void fetch(ParticleIndex sphere) const {
+    __builtin_prefetch(&lists_[sphere]);
+    __builtin_prefetch(&shells_[sphere]);
+  }
+  /// Asks for a long list; reads what fetch() asked for.
+  void fetch_long(ParticleIndex sphere) const {
+    const List& list = lists_[sphere];
+    if (list.capacity > own_entries)
+      for (std::uint32_t k = 0; k < list.count; k += 16)
+        __builtin_prefetch(entries_.data() + list.begin + k);
+  }
+
   /// The spheres that `sphere` may meet.
   std::span<const ParticleIndex> of(ParticleIndex sphere) const {
-    const Slice& slice = slices_[sphere];
-    return {entries_.data() + slice.begin, slice.count};
+    const List& list = lists_[sphere];
+    return {begin_of(list), list.count};
   }
 
   /// Makes all the lists anew. @param shells  [spheres], centres in the unit cube
-  void rebuild(std::vector<Shell> shells) {
+  void rebuild(SphereArray<Shell> shells) {
     shells_ = std::move(shells);
     grid_.clear();
     largest_ = 0;
@@ -51,12 +69,9 @@ public:
     entries_.clear();
     unused_ = 0;
     for (ParticleIndex i = 0; i < shells_.size(); ++i) {
-      const std::size_t begin = entries_.size();
-      find(i, [this](ParticleIndex j) { entries_.push_back(j); });
-      const std::size_t count = entries_.size() - begin;
-      entries_.resize(begin + count + spare_entries, no_sphere);
-      slices_[i] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(count),
-                    static_cast<std::uint32_t>(count + spare_entries)};
+      lists_[i].count = 0;
+      lists_[i].capacity = own_entries;
+      find(i, [this, i](ParticleIndex j) { append(i, j); });
     }
   }
 
@@ -64,7 +79,7 @@ public:
   void renew(ParticleIndex sphere, const Shell& shell) {
     for (const ParticleIndex other : of(sphere))
       drop(other, sphere);
-    slices_[sphere].count = 0;
+    lists_[sphere].count = 0;
     grid_.remove(sphere, shells_[sphere].centre);
     shells_[sphere] = shell;
     grid_.insert(sphere, shell.centre);
@@ -78,10 +93,20 @@ public:
   }
 
 private:
-  struct Slice {
-    std::uint32_t begin = 0, count = 0, capacity = 0;
+  static constexpr std::uint32_t own_entries = 13;
+
+  /// A list of up to 13 fills a cache line; longer ones stand in `entries_`.
+  struct alignas(64) List {
+    std::uint32_t count = 0, capacity = own_entries, begin = 0;
+    std::array<ParticleIndex, own_entries> own = {};
   };
-  static constexpr std::size_t spare_entries = 4;
+
+  const ParticleIndex* begin_of(const List& list) const {
+    return list.capacity > own_entries ? entries_.data() + list.begin : list.own.data();
+  }
+  ParticleIndex* begin_of(List& list) {
+    return list.capacity > own_entries ? entries_.data() + list.begin : list.own.data();
+  }
 
   /// Cells of about two spheres: fewer would cost more empty ones, more spheres more distances.
   static double cell_edge(std::size_t spheres) { return std::cbrt(1.8 / static_cast<double>(spheres)); }
@@ -101,46 +126,50 @@ private:
   }
 
   void drop(ParticleIndex sphere, ParticleIndex other) {
-    Slice& slice = slices_[sphere];
-    ParticleIndex* const begin = entries_.data() + slice.begin;
-    ParticleIndex* const last = begin + --slice.count;
+    List& list = lists_[sphere];
+    ParticleIndex* const begin = begin_of(list);
+    ParticleIndex* const last = begin + --list.count;
     *std::find(begin, last, other) = *last;
   }
 
   void append(ParticleIndex sphere, ParticleIndex other) {
-    Slice& slice = slices_[sphere];
-    if (slice.count == slice.capacity)
-      move_to_end(slice);
-    entries_[slice.begin + slice.count++] = other;
+    List& list = lists_[sphere];
+    if (list.count == list.capacity)
+      move_to_end(list);
+    begin_of(list)[list.count++] = other;
   }
 
-  void move_to_end(Slice& slice) {
+  void move_to_end(List& list) {
     const auto begin = static_cast<std::uint32_t>(entries_.size());
-    unused_ += slice.capacity;
-    slice.capacity = slice.capacity + slice.capacity / 2 + static_cast<std::uint32_t>(spare_entries);
-    entries_.resize(entries_.size() + slice.capacity, no_sphere);
-    std::copy_n(entries_.begin() + slice.begin, slice.count, entries_.begin() + begin);
-    slice.begin = begin;
+    const std::uint32_t capacity = (list.capacity + list.capacity / 2 + 15) / 16 * 16;
+    entries_.resize(entries_.size() + capacity, no_sphere);
+    std::copy_n(begin_of(list), list.count, entries_.begin() + begin);
+    if (list.capacity > own_entries)
+      unused_ += list.capacity;
+    list.capacity = capacity;
+    list.begin = begin;
   }
 
   /// Closes the holes that grown lists have left.
   void compact() {
-    std::vector<ParticleIndex> entries;
+    SphereArray<ParticleIndex> entries;
     entries.reserve(entries_.size() - unused_);
-    for (Slice& slice : slices_) {
+    for (List& list : lists_) {
+      if (list.capacity == own_entries)
+        continue;
       const auto begin = static_cast<std::uint32_t>(entries.size());
-      const auto from = entries_.begin() + slice.begin;
-      entries.insert(entries.end(), from, from + slice.capacity);
-      slice.begin = begin;
+      const auto from = entries_.begin() + list.begin;
+      entries.insert(entries.end(), from, from + list.capacity);
+      list.begin = begin;
     }
     entries_.swap(entries);
     unused_ = 0;
   }
 
   CellGrid grid_;                      ///< by the shells' centres
-  std::vector<Shell> shells_;          ///< [spheres]
-  std::vector<Slice> slices_;          ///< [spheres] where its list stands in `entries_`
-  std::vector<ParticleIndex> entries_; ///< the lists, each followed by spare room
+  SphereArray<Shell> shells_;          ///< [spheres]
+  SphereArray<List> lists_;            ///< [spheres]
+  SphereArray<ParticleIndex> entries_; ///< the long lists, each followed by spare room
   std::size_t unused_ = 0;             ///< entries that belong to no list any more
   double largest_ = 0;                 ///< no shell's radius is larger
   bool periodic_;

@@ -1,0 +1,353 @@
+#pragma once
+
+/// @file
+/// The events of growing hard spheres: which comes next, and what it does.
+
+#include <cdem/packing/detail/approach.hpp>
+#include <cdem/packing/detail/collision_sums.hpp>
+#include <cdem/packing/detail/event_calendar.hpp>
+#include <cdem/packing/detail/near_neighbours.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace cdem::packing::detail {
+
+/// A stretch of the spheres in their order, which follows space; beyond the last comes the first.
+struct Zone {
+  ParticleIndex first = 0, count = 0, all = 0;
+
+  bool holds(ParticleIndex sphere) const {
+    return (sphere >= first ? sphere - first : sphere + (all - first)) < count;
+  }
+};
+
+/// One thread's work in a window of time.
+struct Worker {
+  /// What has to be put back if the window is to be done again.
+  struct Saved {
+    ParticleIndex sphere;
+    Event event;
+    Body body;
+  };
+  /// Alone: every event in the order of time. First: events whose surroundings are in the zone, the others are put
+  /// off. Second: those that were put off, in a zone about the border of two of the first.
+  enum class Turn : std::uint8_t { alone, first, second };
+
+  Turn turn = Turn::alone;
+  std::size_t lane = 0; ///< of the calendar
+  Zone zone;
+  double now = 0, end = 0;            ///< time of the event in hand; end of the window
+  double per_window = 0;              ///< 1 / length of the window
+  std::vector<Appointment> due;       ///< appointments of the window, sorted
+  std::vector<Appointment> sudden;    ///< the same that were made within it: a heap
+  std::vector<Appointment> put_off;   ///< left to the second turn
+  std::vector<ParticleIndex> leaving; ///< spheres that reach their shell in this window
+  std::vector<Saved> saved;
+  std::vector<double> times; ///< scratch
+  WindowSums sums;
+  bool conflict = false; ///< the window has to be done again by one thread
+};
+
+/// Hard spheres of equal mass in the unit cube, radius_i(t) = size_i * scale(t), and their next events.
+///
+/// A sphere knows its next event alone: a collision, the moment it reaches its shell (its list is renewed), or a
+/// second look, when the partner of its collision has had another before. Every own event brings a sphere to its time.
+class SphereCollisions {
+public:
+  // Partners that are no spheres.
+  static constexpr ParticleIndex second_look = no_sphere;
+  static constexpr ParticleIndex own_shell = no_sphere - 1;
+  static constexpr ParticleIndex first_wall = no_sphere - 8; ///< plus 2 axis, plus 1 for the upper wall
+
+  static constexpr bool is_sphere(ParticleIndex partner) { return partner < first_wall; }
+
+  SphereCollisions(std::size_t spheres, bool periodic)
+      : bodies(spheres), events(spheres), neighbours(spheres, periodic),
+        near_walls_(periodic ? 0 : spheres, 0), periodic_(periodic) {}
+
+  double scale_at(double time) const { return scale + growth * time; }
+
+  /// Handles an appointment at its time, unless it is out of date. A collision of two spheres is handled at the
+  /// appointment of either.
+  void handle(Worker& w, const Appointment& appointment) {
+    const ParticleIndex i = appointment.sphere;
+    if (events[i].time != appointment.time)
+      return;
+    w.now = std::max(w.now, appointment.time);
+    if (w.turn == Worker::Turn::first && !may_be_first(w, i))
+      return put_off(w, appointment);
+    ParticleIndex partner = events[i].partner;
+    if (is_sphere(partner)) {
+      if (w.turn != Worker::Turn::alone && !w.zone.holds(partner)) // a former neighbour
+        return w.turn == Worker::Turn::first ? put_off(w, appointment) : void(w.conflict = true);
+      if (events[partner].time != appointment.time || events[partner].partner != i) {
+        if (w.turn == Worker::Turn::first)
+          touched[partner] = w.now;
+        partner = second_look;
+      } else if (w.turn == Worker::Turn::first && !may_be_first(w, partner))
+        return put_off(w, appointment);
+    }
+    if (w.turn != Worker::Turn::alone && !prepare(w, i, partner))
+      return;
+    ++w.sums.events;
+    bodies[i].advance(w.now);
+    events[i] = {};
+    if (is_sphere(partner)) {
+      bodies[partner].advance(w.now);
+      events[partner] = {};
+      collide(w, bodies[i], bodies[partner]);
+      predict(w, i);
+      predict(w, partner);
+      return;
+    }
+    if (partner == own_shell)
+      neighbours.renew(i, new_shell(i, w.now));
+    else if (partner != second_look)
+      bounce(w, bodies[i], partner - first_wall);
+    predict(w, i);
+  }
+
+  /// Gives a sphere a new list of neighbours, and a new event.
+  void renew(Worker& w, ParticleIndex i) {
+    bodies[i].advance(w.now);
+    events[i] = {};
+    neighbours.renew(i, new_shell(i, w.now));
+    predict(w, i);
+  }
+
+  /// A sphere's next event, if those of the others are as they are; the sphere is at time `now`.
+  Event next_event(ParticleIndex i, double now, std::vector<double>& times) const {
+    return find_next(i, now, times);
+  }
+
+  /// The room in which a sphere at time `now` may move; its centre is brought back into the cube.
+  Shell new_shell(ParticleIndex i, double now) {
+    Body& body = bodies[i];
+    if (periodic_)
+      for (int k = 0; k < 3; ++k)
+        body.centre[k] -= std::floor(body.centre[k]);
+    const Shell shell{body.centre, body.size * scale_at(now) + skin};
+    if (!periodic_)
+      note_walls(i, shell);
+    return shell;
+  }
+
+  void note_walls(ParticleIndex i, const Shell& shell) {
+    std::uint8_t walls = 0;
+    for (int k = 0; k < 3; ++k)
+      walls = static_cast<std::uint8_t>(walls | (shell.centre[k] < shell.radius) << 2 * k |
+                                        (1 - shell.centre[k] < shell.radius) << (2 * k + 1));
+    near_walls_[i] = walls;
+  }
+
+  /// Asks for the memory that the appointments after the k-th are going to read: in steps, since each place is known
+  /// from what was read at another.
+  void fetch_ahead(const std::vector<Appointment>& appointments, std::size_t k) const {
+    if (k + 24 < appointments.size()) {
+      const ParticleIndex i = appointments[k + 24].sphere;
+      __builtin_prefetch(&events[i], 1);
+      __builtin_prefetch(&bodies[i], 1);
+      neighbours.fetch(i);
+    }
+    if (k + 16 < appointments.size()) {
+      const ParticleIndex i = appointments[k + 16].sphere;
+      neighbours.fetch_long(i);
+      if (const ParticleIndex j = events[i].partner; is_sphere(j) && j > i)
+        neighbours.fetch(j);
+    }
+    if (k + 10 < appointments.size()) {
+      const ParticleIndex i = appointments[k + 10].sphere, j = events[i].partner;
+      if (!is_sphere(j) || j > i) { // else the partner's appointment does it
+        fetch_surroundings(i);
+        if (is_sphere(j))
+          neighbours.fetch_long(j);
+      }
+    }
+    if (k + 6 < appointments.size()) {
+      const ParticleIndex i = appointments[k + 6].sphere, j = events[i].partner;
+      if (is_sphere(j) && j > i)
+        fetch_surroundings(j);
+    }
+  }
+
+  SphereArray<Body> bodies;
+  SphereArray<Event> events;
+  NearNeighbours neighbours;
+  EventCalendar calendar;
+  double scale = 0, growth = 0; ///< mean diameter at time 0, and its rate
+  double skin = 0;              ///< room in a new shell
+  std::uint32_t window = 0;     ///< number of the window
+  /// [spheres] last time at which a first turn wrote or weighed a sphere's event; empty with one thread
+  SphereArray<double> touched;
+  SphereArray<std::uint32_t> waiting; ///< [spheres] last window in which a sphere or a neighbour was put off
+
+private:
+  void fetch_surroundings(ParticleIndex i) const {
+    for (const ParticleIndex j : neighbours.of(i)) {
+      __builtin_prefetch(&bodies[j]);
+      __builtin_prefetch(&events[j], 1);
+    }
+  }
+
+  /// Whether all that an event of the sphere reads and writes is in the zone and waits for nothing.
+  bool may_be_first(const Worker& w, ParticleIndex i) const {
+    if (!w.zone.holds(i))
+      return false;
+    bool may = true;
+    for (const ParticleIndex j : neighbours.of(i))
+      may = may && w.zone.holds(j) && waiting[j] != window;
+    return may;
+  }
+
+  void put_off(Worker& w, const Appointment& appointment) {
+    w.put_off.push_back(appointment);
+    waiting[appointment.sphere] = window;
+    for (const ParticleIndex j : neighbours.of(appointment.sphere))
+      if (w.zone.holds(j))
+        waiting[j] = window;
+  }
+
+  /// Saves what the event is going to change. @return false, and a conflict, if the event cannot be handled here
+  bool prepare(Worker& w, ParticleIndex i, ParticleIndex partner) {
+    const bool second = w.turn == Worker::Turn::second;
+    if (partner == own_shell || (second && !may_be_second(w, i)) ||
+        (second && is_sphere(partner) && !may_be_second(w, partner))) {
+      w.conflict = true;
+      return false;
+    }
+    save(w, i);
+    if (is_sphere(partner))
+      save(w, partner);
+    return true;
+  }
+
+  /// Whether the surroundings are in the zone and have done nothing in the first turn that was later than now.
+  bool may_be_second(const Worker& w, ParticleIndex i) const {
+    if (!w.zone.holds(i) || touched[i] >= w.now)
+      return false;
+    for (const ParticleIndex j : neighbours.of(i))
+      if (!w.zone.holds(j) || touched[j] >= w.now)
+        return false;
+    return true;
+  }
+
+  void save(Worker& w, ParticleIndex i) {
+    w.saved.push_back({i, events[i], bodies[i]});
+    if (w.turn == Worker::Turn::first)
+      touched[i] = w.now;
+  }
+
+  /// Two spheres of equal mass: the relative normal velocity v_n becomes 2 G - v_n.
+  void collide(Worker& w, Body& a, Body& b) const {
+    Vec3 normal = b.centre - a.centre;
+    if (periodic_)
+      normal = nearest_image(normal);
+    normal /= std::sqrt(normal.squaredNorm());
+    const double size = a.size + b.size;
+    const double parting = size * growth;
+    const double momentum = std::max(parting - normal.dot(b.velocity - a.velocity), 0.0);
+    a.velocity -= momentum * normal;
+    b.velocity += momentum * normal;
+    account(w, momentum, size, parting);
+  }
+
+  void bounce(Worker& w, Body& body, ParticleIndex wall) const {
+    const int axis = static_cast<int>(wall / 2);
+    const double inward = wall % 2 == 0 ? 1 : -1;
+    const double parting = body.size * growth;
+    const double momentum = std::max(2 * (parting - inward * body.velocity[axis]), 0.0);
+    body.velocity[axis] += inward * momentum;
+    account(w, momentum, body.size, parting);
+  }
+
+  void account(Worker& w, double momentum, double size, double parting) const {
+    const double work = momentum * parting; // of the growing surfaces
+    ++w.sums.collisions;
+    w.sums.virial.add(momentum * size * (scale_at(w.now) / scale));
+    w.sums.work.add(work);
+    w.sums.heat.add(work * std::max((w.end - w.now) * w.per_window, 0.0));
+  }
+
+  Event find_next(ParticleIndex i, double now, std::vector<double>& times) const {
+    const Body& a = bodies[i];
+    Event best = events[i];
+    const std::span<const ParticleIndex> list = neighbours.of(i);
+    if (times.size() < list.size() + 4)
+      times.resize(2 * list.size() + 16);
+    const Present present{now, scale_at(now), growth, periodic_};
+    if (!list.empty()) {
+      const Soonest soonest = contact_times(bodies.data(), events.data(), list, a, present, times.data());
+      if (now + soonest.time < best.time)
+        best = {now + soonest.time, list[soonest.place]};
+    }
+    if (!periodic_ && near_walls_[i])
+      for (ParticleIndex wall = 0; wall < 6; ++wall)
+        if (near_walls_[i] >> wall & 1)
+          if (const double time = now + time_to_wall(a, wall, present.scale); time < best.time)
+            best = {time, first_wall + wall};
+    const Shell& shell = neighbours.shell(i);
+    const Vec3 y = a.centre - shell.centre;
+    const double room = shell.radius - a.size * present.scale;
+    const double shrinking = a.size * growth;
+    if (!stays_inside(y, a.velocity, room, shrinking, best.time - now))
+      if (const double time = now + time_to_shell(y, a.velocity, room, shrinking); time < best.time)
+        best = {time, own_shell};
+    return best;
+  }
+
+  /// Finds a sphere's next event and takes a partner away from its former one.
+  void predict(Worker& w, ParticleIndex i) {
+    const Event next = find_next(i, w.now, w.times);
+    if (w.turn == Worker::Turn::first) {
+      const std::span<const ParticleIndex> list = neighbours.of(i);
+      for (std::size_t k = 0; k < list.size(); ++k)
+        if (w.now + w.times[k] <= next.time) // whose events were weighed
+          touched[list[k]] = w.now;
+    }
+    if (!(next.time < events[i].time))
+      return;
+    schedule(w, i, next);
+    if (is_sphere(next.partner)) {
+      if (w.turn != Worker::Turn::alone)
+        save(w, next.partner);
+      schedule(w, next.partner, {next.time, i});
+    }
+  }
+
+  void schedule(Worker& w, ParticleIndex i, const Event& event) {
+    events[i] = event;
+    if (event.time < w.end) {
+      w.sudden.push_back({event.time, i});
+      std::push_heap(w.sudden.begin(), w.sudden.end(), later);
+    } else
+      calendar.add_later(w.lane, {event.time, i});
+  }
+
+public:
+  static bool later(const Appointment& a, const Appointment& b) { return b < a; }
+
+private:
+  /// Whether the sphere is inside its shell after `time`; then it has been all along, since a cone is convex.
+  static bool stays_inside(const Vec3& y, const Vec3& v, double room, double shrinking, double time) {
+    const double left = room - shrinking * time;
+    return left > 0 && (y + v * time).squaredNorm() < left * left;
+  }
+
+  double time_to_wall(const Body& body, ParticleIndex wall, double scale_now) const {
+    const int axis = static_cast<int>(wall / 2);
+    const double distance = wall % 2 == 0 ? body.centre[axis] : 1 - body.centre[axis];
+    const double speed = wall % 2 == 0 ? body.velocity[axis] : -body.velocity[axis];
+    const double approach = body.size * growth - speed;
+    return approach > 0 ? std::max(distance - body.size * scale_now, 0.0) / approach : never;
+  }
+
+  /// [spheres] bit 2 axis (+ 1: upper) of each wall inside the shell; walled only
+  std::vector<std::uint8_t> near_walls_;
+  bool periodic_;
+};
+
+} // namespace cdem::packing::detail
