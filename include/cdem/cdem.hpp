@@ -49,6 +49,7 @@
 #include <cdem/network/neighbour_search.hpp>
 #include <cdem/packing/lubachevsky_stillinger.hpp>
 #include <cdem/packing/packing_generator.hpp>
+#include <cdem/packing/soft_spheres.hpp>
 #include <cdem/particles/constraints.hpp>
 #include <cdem/particles/inertia.hpp>
 #include <cdem/particles/motion.hpp>

@@ -8,8 +8,15 @@
 #include <cdem/particles/particle_set.hpp>
 
 #include <concepts>
+#include <cstdint>
 
 namespace cdem::packing {
+
+/// What bounds the cube that is packed.
+enum class Boundary : std::uint8_t {
+  periodic, ///< the opposite face follows
+  walls     ///< six flat walls
+};
 
 /// Spheres in a box, with the account their generator gives of them.
 template <class ReportType>
@@ -39,7 +46,7 @@ concept Packs = requires(G generator, const core::Monitor& monitor) {
   { generator.pack(monitor) } -> std::same_as<Packing<typename G::Report>>;
 };
 
-/// A way to fill a box with spheres. Models: LubachevskyStillinger.
+/// A way to fill a box with spheres. Models: LubachevskyStillinger, SoftSpheres.
 template <class G>
 concept PackingGenerator = HasParameters<G> && HasDensityReport<G> && Packs<G>;
 
