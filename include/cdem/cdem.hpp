@@ -45,8 +45,11 @@
 #include <cdem/network/coordination.hpp>
 #include <cdem/network/kd_tree.hpp>
 #include <cdem/network/neighbour_search.hpp>
+#include <cdem/packing/lattice.hpp>
 #include <cdem/packing/lubachevsky_stillinger.hpp>
 #include <cdem/packing/packing_generator.hpp>
+#include <cdem/packing/quality.hpp>
+#include <cdem/packing/tiled.hpp>
 #include <cdem/particles/constraints.hpp>
 #include <cdem/particles/inertia.hpp>
 #include <cdem/particles/motion.hpp>
