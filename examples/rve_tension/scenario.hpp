@@ -246,7 +246,7 @@ make_packing(const Params& params, bool& loaded, const core::Monitor& monitor) {
   if (!usable)
     packing.report.require_reached();
   if (!params.checkpoints.empty())
-    io::save_packing(file, packing.particles, packing.box, identity);
+    io::save_packing(file, packing.particles, packing.box, {.parameters = identity});
   return packing;
 }
 

@@ -31,6 +31,7 @@
 #include <cdem/io/bonds_vtu.hpp>
 #include <cdem/io/checkpoint.hpp>
 #include <cdem/io/csv.hpp>
+#include <cdem/io/from_file.hpp>
 #include <cdem/io/interrupt.hpp>
 #include <cdem/io/output_directory.hpp>
 #include <cdem/io/packing_file.hpp>
