@@ -17,9 +17,9 @@ namespace cdem::io {
 
 /// How a file that holds spheres is written.
 enum class SphereFormat : std::uint8_t {
-  automatic,   ///< by its first bytes, and what its name ends in
-  packing,     ///< cdem's own binary file, save_packing()
-  table,       ///< CSV; YADE's export.text, export.textExt and SpherePack.save
+  automatic, ///< by its first bytes, and what its name ends in
+  packing,   ///< cdem's own binary file, save_packing()
+  table,     ///< CSV; YADE's export.text, export.textExt and SpherePack.save
   lammps_data, ///< LAMMPS read_data and write_data, atom styles sphere, bpm/sphere, atomic, bond, angle, molecular
   lammps_dump, ///< LAMMPS dump atom and dump custom, text
   vtk,         ///< VTK's legacy file, ASCII or binary: ParaView, YADE's VTKExporter and text2vtk
@@ -28,7 +28,7 @@ enum class SphereFormat : std::uint8_t {
 
 /// "packing", "table", "LAMMPS data", "LAMMPS dump", "VTK", "VTK XML".
 constexpr std::string_view to_string(SphereFormat format) {
-  constexpr std::array<std::string_view, 7> names{"automatic",   "packing", "table", "LAMMPS data",
+  constexpr std::array<std::string_view, 7> names{"automatic",   "packing", "table",  "LAMMPS data",
                                                   "LAMMPS dump", "VTK",     "VTK XML"};
   return names[static_cast<std::size_t>(format)];
 }
@@ -55,8 +55,10 @@ inline SphereFormat detect_format(const std::filesystem::path& path) {
     return SphereFormat::vtu;
   if (start.starts_with("ITEM:"))
     return SphereFormat::lammps_dump;
-  for (std::size_t at = start.find('\n'), lines = 0; at != start.npos && lines < 10; at = start.find('\n', at + 1), ++lines) {
-    const std::string_view line = detail::trimmed(std::string_view(start).substr(at + 1, start.find('\n', at + 1) - at - 1));
+  for (std::size_t at = start.find('\n'), lines = 0; at != start.npos && lines < 10;
+       at = start.find('\n', at + 1), ++lines) {
+    const std::string_view line =
+        detail::trimmed(std::string_view(start).substr(at + 1, start.find('\n', at + 1) - at - 1));
     if (line.ends_with(" atoms") && detail::number_in<std::uint64_t>(line.substr(0, line.find(' '))))
       return SphereFormat::lammps_data;
   }
@@ -121,7 +123,8 @@ public:
     if (parameters_.box)
       packing.box = *parameters_.box;
     else if (read.box)
-      packing.box = {read.box->lower * parameters_.scale, read.box->upper * parameters_.scale, read.box->periodic};
+      packing.box = {read.box->lower * parameters_.scale, read.box->upper * parameters_.scale,
+                     read.box->periodic};
     else
       packing.box = bounding_box(packing.particles);
     report.box_from_spheres = !parameters_.box && !read.box;
@@ -181,9 +184,9 @@ private:
       centre = box.wrap(centre);
       for (int k = 0; k < 3; ++k)
         if (!(centre[k] >= box.lower[k] && centre[k] <= box.upper[k]))
-          fail(std::string(1, "xyz"[k]) + " of sphere " + std::to_string(i) + " is " + core::to_text(centre[k]) +
-               " m, outside the box, which goes from " + core::to_text(box.lower[k]) + " to " +
-               core::to_text(box.upper[k]));
+          fail(std::string(1, "xyz"[k]) + " of sphere " + std::to_string(i) + " is " +
+               core::to_text(centre[k]) + " m, outside the box, which goes from " +
+               core::to_text(box.lower[k]) + " to " + core::to_text(box.upper[k]));
     }
   }
 

@@ -40,7 +40,8 @@ inline std::uint32_t edge_fraction(double coordinate, double lower, double edge)
   return static_cast<std::uint32_t>(std::clamp(steps, 0.0, 0x1p32 - 1));
 }
 
-inline void add_compact(CheckpointWriter& file, const particles::ParticleSet& particles, const geometry::Box& box) {
+inline void add_compact(CheckpointWriter& file, const particles::ParticleSet& particles,
+                        const geometry::Box& box) {
   std::vector<std::array<std::uint32_t, 3>> fractions(particles.size());
   for (std::size_t i = 0; i < fractions.size(); ++i) {
     const Vec3 point = box.wrap(particles.position[i]);
@@ -48,19 +49,22 @@ inline void add_compact(CheckpointWriter& file, const particles::ParticleSet& pa
       if (!(point[k] >= box.lower[k] && point[k] <= box.upper[k]))
         core::reject(std::string("position ") + "xyz"[k] + " of particle " + std::to_string(i), point[k],
                      "a centre inside the box is expected in a compact packing file");
-      fractions[i][static_cast<std::size_t>(k)] = edge_fraction(point[k], box.lower[k], box.upper[k] - box.lower[k]);
+      fractions[i][static_cast<std::size_t>(k)] =
+          edge_fraction(point[k], box.lower[k], box.upper[k] - box.lower[k]);
     }
   }
   file.add("position in 2^-32 of the edges", fractions);
 }
 
-inline void read_compact(const CheckpointReader& file, particles::ParticleSet& particles, const geometry::Box& box) {
+inline void read_compact(const CheckpointReader& file, particles::ParticleSet& particles,
+                         const geometry::Box& box) {
   const auto fractions = file.read<std::array<std::uint32_t, 3>>("position in 2^-32 of the edges");
   particles.position.resize(fractions.size());
   for (std::size_t i = 0; i < fractions.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
-      particles.position[i][axis] = box.lower[axis] + (fractions[i][k] + 0.5) * 0x1p-32 * (box.upper[axis] - box.lower[axis]);
+      particles.position[i][axis] =
+          box.lower[axis] + (fractions[i][k] + 0.5) * 0x1p-32 * (box.upper[axis] - box.lower[axis]);
     }
 }
 
@@ -93,7 +97,8 @@ inline void save_packing(const std::filesystem::path& path, const particles::Par
     file.add("radius in single precision", std::vector<float>(radius.begin(), radius.end()));
   else
     file.add("radius", radius);
-  if (std::any_of(particles.phase.begin(), particles.phase.end(), [](PhaseIndex phase) { return phase != 0; }))
+  if (std::any_of(particles.phase.begin(), particles.phase.end(),
+                  [](PhaseIndex phase) { return phase != 0; }))
     file.add("phase", particles.phase);
   file.add("box", std::array{box.lower.x(), box.lower.y(), box.lower.z(), box.upper.x(), box.upper.y(),
                              box.upper.z()});

@@ -261,7 +261,8 @@ TEST_CASE("A compact packing is half as long and as near as it says; equal radii
 
   particles.position[7].z() = 3.5; // behind a wall
   CHECK(contains(message_of<core::InvalidInput>([&] {
-                   io::save_packing(folder / "x.cdem", particles, box, {.digits = io::PackingDigits::compact});
+                   io::save_packing(folder / "x.cdem", particles, box,
+                                    {.digits = io::PackingDigits::compact});
                  }),
                  "position z of particle 7 = 3.5"));
   CHECK_FALSE(std::filesystem::exists(folder / "x.cdem"));

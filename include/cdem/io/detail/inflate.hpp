@@ -174,7 +174,11 @@ private:
       }
       const std::uint8_t repeated = symbol == 16 && !lengths.empty() ? lengths.back() : std::uint8_t{0};
       failed_ = failed_ || (symbol == 16 && lengths.empty());
-      lengths.insert(lengths.end(), symbol == 16 ? 3 + bits(2) : symbol == 17 ? 3 + bits(3) : 11 + bits(7), repeated);
+      lengths.insert(lengths.end(),
+                     symbol == 16   ? 3 + bits(2)
+                     : symbol == 17 ? 3 + bits(3)
+                                    : 11 + bits(7),
+                     repeated);
     }
     if (failed_ || lengths.size() != literals + distances) {
       failed_ = true;

@@ -114,8 +114,8 @@ public:
   std::uint64_t whole(std::string_view text, std::string_view name, std::uint64_t most = 0xffffffffU) const {
     const auto value = number_in<std::uint64_t>(text);
     if (!value || *value > most)
-      fail(std::string(name) + " is '" + std::string(text) + "', a whole number from 0 to " + std::to_string(most) +
-           " is expected");
+      fail(std::string(name) + " is '" + std::string(text) + "', a whole number from 0 to " +
+           std::to_string(most) + " is expected");
     return *value;
   }
   /// Fails unless there are so many fields.
@@ -160,7 +160,9 @@ inline std::string plain_name(std::string_view name) {
 inline bool names_radius(const std::string& plain) {
   return plain == "radius" || plain == "r" || plain == "radii" || plain == "rad";
 }
-inline bool names_diameter(const std::string& plain) { return plain == "diameter" || plain == "d"; }
+inline bool names_diameter(const std::string& plain) {
+  return plain == "diameter" || plain == "d";
+}
 inline bool names_phase(const std::string& plain) {
   return plain == "phase" || plain == "matid" || plain == "materialid";
 }

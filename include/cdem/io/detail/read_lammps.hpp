@@ -49,10 +49,11 @@ inline AtomStyle atom_style(const LineReader& reader, std::string_view name, std
     return {5, 1, 0, 2}; // id type x y z
   if (name == "bond" || name == "molecular" || name == "angle")
     return {6, 2, 0, 3}; // id molecule type x y z
-  reader.fail(name.empty() ? "the section Atoms does not name its style, and " + std::to_string(columns) +
-                                 " columns do not tell it: 'Atoms # sphere' is expected"
-                           : "atom style '" + std::string(name) +
-                                 "' is not read; sphere, bpm/sphere, atomic, bond, angle or molecular is expected");
+  reader.fail(name.empty()
+                  ? "the section Atoms does not name its style, and " + std::to_string(columns) +
+                        " columns do not tell it: 'Atoms # sphere' is expected"
+                  : "atom style '" + std::string(name) +
+                        "' is not read; sphere, bpm/sphere, atomic, bond, angle or molecular is expected");
 }
 
 /// Reads a data file: header, box, section Atoms. Other sections are skipped. The box is periodic, LAMMPS's default, since the
@@ -78,7 +79,8 @@ inline SphereFile read_lammps_data(const std::filesystem::path& path) {
         bounded[k] = true;
       }
     if (fields.size() == 6 && fields[3] == "xy" &&
-        std::any_of(fields.begin(), fields.begin() + 3, [&](auto tilt) { return reader.finite(tilt, "tilt") != 0; }))
+        std::any_of(fields.begin(), fields.begin() + 3,
+                    [&](auto tilt) { return reader.finite(tilt, "tilt") != 0; }))
       reader.fail("the box is tilted, a rectangular one is expected");
     if (fields.size() == 1 && fields[0] == "Atoms")
       break;
@@ -133,8 +135,11 @@ struct DumpColumns {
             scaled[k] = kind.starts_with("s");
           }
         }
-      (name == "id" ? id : name == "type" ? type : name == "radius" ? radius : name == "diameter" ? diameter : unused_) =
-          at;
+      (name == "id"         ? id
+       : name == "type"     ? type
+       : name == "radius"   ? radius
+       : name == "diameter" ? diameter
+                            : unused_) = at;
     }
     if (*std::min_element(centre.begin(), centre.end()) < 0)
       reader.fail("columns x, y and z (or xs, xu, xsu and so on) are expected among the atoms'");
@@ -196,7 +201,8 @@ inline SphereFile read_lammps_dump(const std::filesystem::path& path) {
         else if (columns.diameter >= 0)
           radius = reader.finite(at(columns.diameter), "diameter") / 2;
         ids.push_back(columns.id >= 0 ? reader.whole(at(columns.id), "atom id", ~std::uint64_t{0}) : a);
-        file.add(reader, centre, radius, columns.type >= 0 ? phase_of_type(reader, at(columns.type)) : PhaseIndex{0});
+        file.add(reader, centre, radius,
+                 columns.type >= 0 ? phase_of_type(reader, at(columns.type)) : PhaseIndex{0});
       }
       sort_by_id(file, ids, reader);
     }

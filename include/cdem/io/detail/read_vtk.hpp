@@ -22,17 +22,15 @@ struct VtkType {
       std::string_view name;
       VtkType type;
     };
-    static constexpr std::array<Known, 22> known{{{"float", {'f', 4}},          {"double", {'f', 8}},
-                                                  {"char", {'i', 1}},           {"unsigned_char", {'u', 1}},
-                                                  {"short", {'i', 2}},          {"unsigned_short", {'u', 2}},
-                                                  {"int", {'i', 4}},            {"unsigned_int", {'u', 4}},
-                                                  {"long", {'i', 8}},           {"unsigned_long", {'u', 8}},
-                                                  {"vtkIdType", {'i', 4}},      {"vtktypeint64", {'i', 8}},
-                                                  {"Float32", {'f', 4}},        {"Float64", {'f', 8}},
-                                                  {"Int8", {'i', 1}},           {"UInt8", {'u', 1}},
-                                                  {"Int16", {'i', 2}},          {"UInt16", {'u', 2}},
-                                                  {"Int32", {'i', 4}},          {"UInt32", {'u', 4}},
-                                                  {"Int64", {'i', 8}},          {"UInt64", {'u', 8}}}};
+    static constexpr std::array<Known, 22> known{
+        {{"float", {'f', 4}},         {"double", {'f', 8}},       {"char", {'i', 1}},
+         {"unsigned_char", {'u', 1}}, {"short", {'i', 2}},        {"unsigned_short", {'u', 2}},
+         {"int", {'i', 4}},           {"unsigned_int", {'u', 4}}, {"long", {'i', 8}},
+         {"unsigned_long", {'u', 8}}, {"vtkIdType", {'i', 4}},    {"vtktypeint64", {'i', 8}},
+         {"Float32", {'f', 4}},       {"Float64", {'f', 8}},      {"Int8", {'i', 1}},
+         {"UInt8", {'u', 1}},         {"Int16", {'i', 2}},        {"UInt16", {'u', 2}},
+         {"Int32", {'i', 4}},         {"UInt32", {'u', 4}},       {"Int64", {'i', 8}},
+         {"UInt64", {'u', 8}}}};
     for (const Known& one : known)
       if (one.name == name)
         return one.type;
@@ -151,7 +149,7 @@ private:
       fail("the file ends here");
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     const std::string_view found = std::string_view(text_).substr(at_, end - at_);
-    at_ = end + 1;
+    at_ = std::min(end + 1, text_.size());
     ++number_;
     return found;
   }
@@ -174,7 +172,8 @@ private:
       if (text_.size() - std::min(at_, text_.size()) < count * type.bytes)
         fail("the file ends before the " + std::to_string(count) + " numbers that follow");
       for (std::size_t k = 0; k < count && keep; ++k)
-        keep->push_back(type.at(text_.data() + at_ + k * type.bytes, std::endian::native == std::endian::little));
+        keep->push_back(
+            type.at(text_.data() + at_ + k * type.bytes, std::endian::native == std::endian::little));
       at_ += count * type.bytes;
       if (at_ < text_.size() && text_[at_] == '\n') {
         ++at_;
@@ -196,7 +195,8 @@ private:
       if (at_ >= text_.size())
         fail("the file ends within number " + std::to_string(k + 1) + " of " + std::to_string(count));
       if (!value)
-        fail("'" + std::string(word) + "' stands for number " + std::to_string(k + 1) + " of " + std::to_string(count));
+        fail("'" + std::string(word) + "' stands for number " + std::to_string(k + 1) + " of " +
+             std::to_string(count));
       --number_;
       if (keep)
         keep->push_back(*value);
@@ -290,7 +290,8 @@ private:
       if (words.size() != 4)
         fail("name, components, tuples and type of an array are expected");
       const std::size_t components = count(words[1]), tuples = count(words[2]);
-      values(words[3], components * tuples, of_points_ ? arrays_.wanted(unescaped(words[0]), components) : nullptr);
+      values(words[3], components * tuples,
+             of_points_ ? arrays_.wanted(unescaped(words[0]), components) : nullptr);
       --arrays;
     }
   }

@@ -19,8 +19,8 @@ public:
 
   SphereFile read() {
     open();
-    static constexpr std::array<std::string_view, 9> sections{"FieldData", "PointData", "CellData", "Points", "Cells",
-                                                              "Verts",     "Lines",     "Strips",   "Polys"};
+    static constexpr std::array<std::string_view, 9> sections{
+        "FieldData", "PointData", "CellData", "Points", "Cells", "Verts", "Lines", "Strips", "Polys"};
     std::string_view section; // the last that was opened
     int pieces = 0;
     while (const auto tag = next_tag()) {
@@ -48,7 +48,8 @@ private:
   }
   /// Fails with the line that is being read.
   [[noreturn]] void fail_here(const std::string& why) const {
-    const auto lines = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, end_)), '\n');
+    const auto lines =
+        std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, end_)), '\n');
     fail("line " + std::to_string(lines + 1) + ": " + why);
   }
 
@@ -68,11 +69,13 @@ private:
     const std::string_view compressor = attribute(tag, "compressor");
     packed_ = !compressor.empty();
     if (packed_ && compressor != "vtkZLibDataCompressor")
-      fail_here("its data are packed by " + std::string(compressor) + "; vtkZLibDataCompressor or none is expected");
+      fail_here("its data are packed by " + std::string(compressor) +
+                "; vtkZLibDataCompressor or none is expected");
     const std::size_t appended = text_.find("<AppendedData", at_);
     if (appended != text_.npos) {
       const std::size_t mark = text_.find('_', text_.find('>', appended));
-      const std::string_view opening(text_.data() + appended, std::min(text_.find('>', appended), text_.size()) - appended);
+      const std::string_view opening(text_.data() + appended,
+                                     std::min(text_.find('>', appended), text_.size()) - appended);
       raw_ = attribute(opening, "encoding") == "raw";
       if (mark != text_.npos)
         appended_ = std::string_view(text_).substr(mark + 1);
@@ -93,7 +96,9 @@ private:
     at_ = end + 1;
     return std::string_view(text_).substr(begin + 1, end - begin - 1);
   }
-  static std::string_view name_of(std::string_view tag) { return tag.substr(0, tag.find_first_of(" \t\r\n/", 1)); }
+  static std::string_view name_of(std::string_view tag) {
+    return tag.substr(0, tag.find_first_of(" \t\r\n/", 1));
+  }
   /// Text up to the next tag.
   std::string_view content() const { return std::string_view(text_).substr(at_, text_.find('<', at_) - at_); }
 
@@ -112,14 +117,16 @@ private:
     return number_in<std::size_t>(attribute(tag, "NumberOfComponents")).value_or(1);
   }
 
-  std::vector<double> values(std::string_view tag, std::string_view inside, std::size_t expected_components) const {
+  std::vector<double> values(std::string_view tag, std::string_view inside,
+                             std::size_t expected_components) const {
     const std::string name(attribute(tag, "Name"));
     if (components(tag) != expected_components)
       fail_here("array '" + name + "' has " + std::to_string(components(tag)) + " components, " +
                 std::to_string(expected_components) + " are expected");
     const VtkType type = VtkType::named(attribute(tag, "type"));
     if (type.kind == 0)
-      fail_here("array '" + name + "' is of type '" + std::string(attribute(tag, "type")) + "', which is not known");
+      fail_here("array '" + name + "' is of type '" + std::string(attribute(tag, "type")) +
+                "', which is not known");
     const std::string_view format = attribute(tag, "format");
     std::vector<double> numbers;
     if (format == "ascii") {
@@ -127,7 +134,8 @@ private:
         const std::size_t end = std::min(inside.find_first_of(" \t\r\n", at), inside.size());
         const auto value = number_in<double>(inside.substr(at, end - at));
         if (!value)
-          fail_here("array '" + name + "' holds '" + std::string(inside.substr(at, end - at)) + "', a number is expected");
+          fail_here("array '" + name + "' holds '" + std::string(inside.substr(at, end - at)) +
+                    "', a number is expected");
         numbers.push_back(*value);
         at = end;
       }
@@ -142,7 +150,8 @@ private:
       data = appended_.substr(*offset);
       raw = raw_;
     } else if (format != "binary") {
-      fail_here("array '" + name + "' is of format '" + std::string(format) + "'; ascii, binary or appended is expected");
+      fail_here("array '" + name + "' is of format '" + std::string(format) +
+                "'; ascii, binary or appended is expected");
     }
     const auto bytes = raw ? decode_raw(data) : decode_text(data);
     if (!bytes || bytes->size() % type.bytes != 0)
@@ -183,11 +192,13 @@ private:
     if (!numbers)
       return std::nullopt;
     if (!packed_) {
-      const std::size_t length = head(*first, 0), whole = characters(header_.bytes + std::min(length, data.size()));
+      const std::size_t length = head(*first, 0),
+                        whole = characters(header_.bytes + std::min(length, data.size()));
       const auto all = decode_base64(data.substr(0, whole));
       if (!all || all->size() < header_.bytes)
         return std::nullopt;
-      return unpack(std::string_view(*all).substr(0, header_.bytes), std::string_view(*all).substr(header_.bytes));
+      return unpack(std::string_view(*all).substr(0, header_.bytes),
+                    std::string_view(*all).substr(header_.bytes));
     }
     const std::size_t split = characters(*numbers * header_.bytes);
     if (split > data.size())
@@ -211,7 +222,8 @@ private:
     const std::size_t blocks = head(heads, 0), full = head(heads, 1), last = head(heads, 2);
     std::string bytes;
     for (std::size_t block = 0; block < blocks; ++block) {
-      const std::size_t length = head(heads, 3 + block), wanted = block + 1 == blocks && last > 0 ? last : full;
+      const std::size_t length = head(heads, 3 + block),
+                        wanted = block + 1 == blocks && last > 0 ? last : full;
       if (length > body.size() || wanted > 2000 * (length + 1)) // zlib packs 1032 into 1 at best
         return std::nullopt;
       const auto part = Inflater(body.substr(0, length)).decode(wanted);
