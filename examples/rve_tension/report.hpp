@@ -21,12 +21,12 @@ inline io::Results tabulate(const Params& params, const Result& result) {
   io::Results table;
   const std::string printed = "[L17] section 2.1";
   const auto at_size = [&](std::uint32_t particles, double value) {
-    return params.packing.particles == particles ? std::optional(value) : std::nullopt;
+    return result.specimen.particles.size() == particles ? std::optional(value) : std::nullopt;
   };
   const auto or_else = [](std::optional<double> a, std::optional<double> b) { return a ? a : b; };
 
   table.add({"packing.density", "phi", result.specimen.density(), "1", 0.64, printed});
-  if (!result.packing_loaded) {
+  if (result.packing_reported) {
     table.add({"packing.reduced_pressure", "PV/NkT", result.packing.pressure});
     table.add({"packing.largest_overlap", "", result.packing.largest_overlap});
     if (result.packing.pressure >=
