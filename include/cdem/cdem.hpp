@@ -35,6 +35,7 @@
 #include <cdem/io/interrupt.hpp>
 #include <cdem/io/output_directory.hpp>
 #include <cdem/io/packing_file.hpp>
+#include <cdem/io/packing_quality.hpp>
 #include <cdem/io/particles_vtu.hpp>
 #include <cdem/io/results.hpp>
 #include <cdem/io/specimens_vtu.hpp>
