@@ -5,6 +5,7 @@
 #include <cdem/io/bonds_vtu.hpp>
 #include <cdem/io/csv.hpp>
 #include <cdem/io/output_directory.hpp>
+#include <cdem/io/packing_quality.hpp>
 #include <cdem/io/particles_vtu.hpp>
 #include <cdem/io/results.hpp>
 #include <cdem/io/specimens_vtu.hpp>
@@ -105,12 +106,7 @@ inline void write_curve(const MaterialResult& m, const std::filesystem::path& pa
 
 /// Writes results.csv, the curves, the angles and the fields.
 inline void write(const Params& params, const Result& result, const io::OutputDirectory& out) {
-  io::CsvWriter angles(out.file("angles.csv"), {"plane", "class", "angle_rad", "fraction"});
-  const char* planes[3] = {"yz", "zx", "xy"};
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t c = 0; c < result.anisotropy.fraction[k].size(); ++c)
-      angles.row(planes[k], c, result.anisotropy.angle(c), result.anisotropy.fraction[k][c]);
-  angles.commit();
+  io::write_angles(out.file("angles.csv"), result.anisotropy);
 
   io::CsvWriter degrees(out.file("degrees.csv"), {"bonds_of_a_particle", "particles"});
   for (std::size_t d = 0; d < result.degrees.particles.size(); ++d)
