@@ -67,9 +67,9 @@ TEST_CASE("crystals have their exact contacts, shells and no long waves") {
     REQUIRE(q.contacts_histogram.size() == crystal.contacts + 1);
     CHECK(q.contacts_histogram.back() == q.particles);
     CHECK(q.largest_overlap < 1e-12);
-    for (const auto& [squared, count] : crystal.shells) {
-      CAPTURE(squared);
-      CHECK(neighbours(q, std::sqrt(squared)) == doctest::Approx(count).epsilon(1e-9));
+    for (const auto& shell : crystal.shells) {
+      CAPTURE(shell.first);
+      CHECK(neighbours(q, std::sqrt(shell.first)) == doctest::Approx(shell.second).epsilon(1e-9));
     }
     CHECK(neighbours(q, 0.9) == 0);
     CHECK(neighbours(q, 1.1) == 0);
