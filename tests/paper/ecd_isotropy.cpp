@@ -139,6 +139,21 @@ TEST_CASE("the results stand beside what the paper prints, and the curves are wr
         result.cases[1].quality.isotropic_deviation);
 }
 
+TEST_CASE("a packing's figures have plain names where there is no condition") {
+  ecd::Params params = small();
+  params.sizes = {500};
+  params.covs = {0};
+  io::Results table;
+  io::add_quality(table, ecd::run(params).cases[0].quality);
+  std::vector<std::string> names;
+  for (const io::Result& row : table.list())
+    names.push_back(row.quantity);
+  for (const char* name :
+       {"packing.density", "packing.rattlers", "packing.reduced_pressure",
+        "packing.structure_factor[of=volume]", "network.eps", "network.anisotropy[plane=zx]"})
+    CHECK_MESSAGE(std::find(names.begin(), names.end(), name) != names.end(), name);
+}
+
 TEST_CASE("bad parameters are refused before anything is packed") {
   const auto refuse = [](auto change, const char* what) {
     ecd::Params params = small();
