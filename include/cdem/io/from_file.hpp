@@ -37,12 +37,7 @@ constexpr std::string_view to_string(SphereFormat format) {
 /// a number of atoms, else a table.
 /// @throws core::FileError if it cannot be read
 inline SphereFormat detect_format(const std::filesystem::path& path) {
-  std::error_code ignored;
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path, ignored))
-    throw core::FileError("cannot read " + path.string() + ": " +
-                          (in ? "it is a folder" : std::generic_category().message(errno)));
+  std::ifstream in = detail::open_input(path);
   std::string start(1024, '\0');
   in.read(start.data(), static_cast<std::streamsize>(start.size()));
   start.resize(static_cast<std::size_t>(in.gcount()));

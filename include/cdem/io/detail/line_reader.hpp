@@ -7,10 +7,13 @@
 #include <cdem/geometry/box.hpp>
 #include <cdem/particles/particle_set.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -66,17 +69,28 @@ std::optional<Number> number_in(std::string_view text) {
   return value;
 }
 
+/// Opens a file for reading.
+/// @throws core::FileError if it cannot be read or is a folder
+inline std::ifstream open_input(const std::filesystem::path& path) {
+  std::error_code ignored;
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in || std::filesystem::is_directory(path, ignored))
+    throw core::FileError("cannot read " + path.string() + ": " +
+                          (in ? "it is a folder" : std::generic_category().message(errno)));
+  return in;
+}
+
+/// The bytes of a file.
+inline std::string whole_file(const std::filesystem::path& path) {
+  std::ifstream in = open_input(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 /// Reads a text file line by line. Every failure throws core::FileError, "cannot read <file>: line <n>: <what>".
 class LineReader {
 public:
-  explicit LineReader(std::filesystem::path path) : path_(std::move(path)) {
-    std::error_code ignored;
-    errno = 0;
-    file_.open(path_, std::ios::binary);
-    if (!file_ || std::filesystem::is_directory(path_, ignored))
-      throw core::FileError("cannot read " + path_.string() + ": " +
-                            (file_ ? "it is a folder" : std::generic_category().message(errno)));
-  }
+  explicit LineReader(std::filesystem::path path) : path_(std::move(path)), file_(open_input(path_)) {}
 
   /// Goes to the next line; false at the end of the file. A last line without an end is refused: it may have lost digits.
   bool next() {

@@ -5,9 +5,9 @@
 
 #include <cdem/io/detail/line_reader.hpp>
 
+#include <array>
 #include <bit>
 #include <cstring>
-#include <iterator>
 
 namespace cdem::io::detail {
 
@@ -60,16 +60,6 @@ struct VtkType {
     }
   }
 };
-
-inline std::string whole_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path, ignored))
-    throw core::FileError("cannot read " + path.string() + ": " +
-                          (in ? "it is a folder" : std::generic_category().message(errno)));
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// The arrays that both kinds of VTK file are searched for.
 struct PointArrays {
