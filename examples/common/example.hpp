@@ -19,6 +19,8 @@
 #include <utility>
 #include <vector>
 
+#include "packings.hpp"
+
 namespace cdem::examples {
 
 /// The options that every example takes.
@@ -46,6 +48,36 @@ struct CommonOptions {
         });
     app.add_flag("--quick", quick, "A small run of a few seconds, to see that everything works");
     app.add_flag("!--no-plot", plot, "Draw no pictures");
+  }
+};
+
+/// The options of an example that packs: add them after those that say how, which a packing given makes void.
+struct PackingOptions {
+  std::filesystem::path file;
+  std::filesystem::path cache;
+  bool keep = true;
+
+  void add_to(CLI::App& app, const std::vector<std::string>& void_options) {
+    auto* given =
+        app.add_option("--packing", file,
+                       "File with the packing, instead of making one: .cdem, CSV, YADE, LAMMPS, VTK")
+            ->check(CLI::ExistingFile);
+    for (const std::string& name : void_options)
+      given->excludes(app.get_option(name));
+    app.add_option("--cache", cache,
+                   "Folder in which packings are kept for later runs; default: packings beside --out")
+        ->check([](const std::string& text) {
+          return text.empty() ? std::string("a folder's name is expected") : std::string();
+        });
+    app.add_flag("!--no-cache", keep, "Keep no packing, use none that was kept");
+  }
+
+  /// What they come to, given the folder of the results.
+  PackingSource source(const std::filesystem::path& out) const {
+    if (!keep)
+      return {file, {}};
+    const std::filesystem::path results = (out / "").lexically_normal().parent_path();
+    return {file, cache.empty() ? results.parent_path() / "packings" : cache};
   }
 };
 

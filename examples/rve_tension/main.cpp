@@ -26,6 +26,8 @@ int main(int argc, char** argv) {
       app, "--boundary", boundary,
       {{"periodic", packing::Boundary::periodic}, {"walls", packing::Boundary::walls}},
       "Box of the packing: periodic (then cut to a cube) or walls");
+  examples::PackingOptions packings;
+  packings.add_to(app, {"--particles", "--seed", "--cov", "--density", "--growth", "--boundary"});
   app.add_option("--coordination", params.coordination, "Coordination number Z")->capture_default_str();
   examples::add_choice<Axis>(app, "--axis", params.axis, {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}},
                              "Axis of the tension");
@@ -60,6 +62,7 @@ int main(int argc, char** argv) {
     params.packing.seed = common.seed;
     params.packing.boundary = boundary;
     params.threads = common.threads;
+    params.source = packings.source(common.out);
     params.validate();
     const io::OutputDirectory out(common.out);
     params.checkpoints = out.path();
@@ -70,11 +73,11 @@ int main(int argc, char** argv) {
     progress.end_line();
 
     std::printf("%s\n", rve::tabulate(params, result).text().c_str());
-    if (!result.packing_loaded && !result.packing.reached())
+    if (result.packing_reported && !result.packing.reached())
       std::printf("The packing jammed at a density of %.4f, below the %.4g asked for: walls and equal sizes "
                   "keep spheres apart; --growth below %g packs denser.\n",
                   result.packing.density, params.packing.density, params.packing.growth_rate);
-    if (!result.packing_loaded && result.packing.pressure < rve::jammed)
+    if (result.packing_reported && result.packing.pressure < rve::jammed)
       std::printf("The packing is not jammed (reduced pressure %.0f): hardly any spheres touch, so no "
                   "rattlers are counted.\n",
                   result.packing.pressure);

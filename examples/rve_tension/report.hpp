@@ -5,6 +5,7 @@
 #include <cdem/io/bonds_vtu.hpp>
 #include <cdem/io/csv.hpp>
 #include <cdem/io/output_directory.hpp>
+#include <cdem/io/packing_quality.hpp>
 #include <cdem/io/particles_vtu.hpp>
 #include <cdem/io/results.hpp>
 #include <cdem/io/specimens_vtu.hpp>
@@ -21,12 +22,12 @@ inline io::Results tabulate(const Params& params, const Result& result) {
   io::Results table;
   const std::string printed = "[L17] section 2.1";
   const auto at_size = [&](std::uint32_t particles, double value) {
-    return params.packing.particles == particles ? std::optional(value) : std::nullopt;
+    return result.specimen.particles.size() == particles ? std::optional(value) : std::nullopt;
   };
   const auto or_else = [](std::optional<double> a, std::optional<double> b) { return a ? a : b; };
 
   table.add({"packing.density", "phi", result.specimen.density(), "1", 0.64, printed});
-  if (!result.packing_loaded) {
+  if (result.packing_reported) {
     table.add({"packing.reduced_pressure", "PV/NkT", result.packing.pressure});
     table.add({"packing.largest_overlap", "", result.packing.largest_overlap});
     if (result.packing.pressure >=
@@ -107,12 +108,7 @@ inline void write_curve(const MaterialResult& m, const std::filesystem::path& pa
 
 /// Writes results.csv, the curves, the angles and the fields.
 inline void write(const Params& params, const Result& result, const io::OutputDirectory& out) {
-  io::CsvWriter angles(out.file("angles.csv"), {"plane", "class", "angle_rad", "fraction"});
-  const char* planes[3] = {"yz", "zx", "xy"};
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t c = 0; c < result.anisotropy.fraction[k].size(); ++c)
-      angles.row(planes[k], c, result.anisotropy.angle(c), result.anisotropy.fraction[k][c]);
-  angles.commit();
+  io::write_angles(out.file("angles.csv"), result.anisotropy);
 
   io::CsvWriter degrees(out.file("degrees.csv"), {"bonds_of_a_particle", "particles"});
   for (std::size_t d = 0; d < result.degrees.particles.size(); ++d)

@@ -10,7 +10,6 @@
 #include <cdem/integrate/rayleigh_quotient.hpp>
 #include <cdem/integrate/velocity_verlet.hpp>
 #include <cdem/io/checkpoint.hpp>
-#include <cdem/io/packing_file.hpp>
 #include <cdem/network/anisotropy.hpp>
 #include <cdem/network/coordination.hpp>
 #include <cdem/packing/lubachevsky_stillinger.hpp>
@@ -25,6 +24,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/packings.hpp"
 #include "statics.hpp"
 
 namespace cdem::examples::rve_tension {
@@ -53,6 +53,7 @@ enum class Method : std::uint8_t {
 
 struct Params {
   packing::LubachevskyStillinger::Parameters packing = {};
+  PackingSource source = {}; ///< a packing given, and where those made are kept
   double coordination = 6.2; ///< Z, [L17] section 2.1
   Axis axis = Axis::x;       ///< of the tension
   double velocity = 1e-5;    ///< m/s, [L17] section 2.3; statics take it as m
@@ -107,8 +108,9 @@ struct MaterialResult {
 };
 
 struct Result {
-  packing::LubachevskyStillinger::Report packing; ///< of a packing made in this run; zero when it was loaded
-  bool packing_loaded = false;
+  packing::LubachevskyStillinger::Report packing; ///< the density alone for a packing given as a file
+  bool packing_loaded = false;                    ///< from a file given, or one kept by an earlier run
+  bool packing_reported = false;                  ///< whether there is a generator's report
   simulation::Specimen specimen;
   boundary::TensionSetup setup;
   network::Anisotropy<> anisotropy;
@@ -121,30 +123,6 @@ struct Result {
 namespace detail {
 
 using Recorder = homogenize::TensionRecorder<bond::LinearForces>;
-
-/// Names everything that the result of a packing depends on: a packing file with the same text is the same packing.
-inline std::string describe(const packing::LubachevskyStillinger::Parameters& p) {
-  std::string text;
-  const auto line = [&](const char* name, const auto& value) {
-    std::ostringstream out;
-    out.precision(17);
-    out << name << " = " << value << '\n';
-    text += out.str();
-  };
-  line("generator", "Lubachevsky-Stillinger");
-  line("particles", p.particles);
-  line("density", p.density);
-  line("cov", p.cov);
-  line("truncation", p.truncation);
-  line("smallest_radius", p.smallest_radius);
-  line("growth_rate", p.growth_rate);
-  line("fluid_growth_rate", p.fluid_growth_rate);
-  line("pressure_limit", p.pressure_limit);
-  line("side", p.side);
-  line("boundary", p.boundary == packing::Boundary::periodic ? "periodic" : "walls");
-  line("seed", p.seed);
-  return text;
-}
 
 /// Writes or reads one part of the recorder's state; Archive is a CheckpointWriter or a CheckpointReader.
 struct Save {
@@ -224,40 +202,31 @@ inline void load(const std::filesystem::path& path, const std::string& identity,
   recorder.visit_state(Load{file});
 }
 
-/// The packing: loaded when resuming and it was made with the same parameters, else made and saved. One that jams
-/// up to a tenth below the density asked for is used all the same, and its report says so; any other is an error.
-inline packing::Packing<packing::LubachevskyStillinger::Report>
-make_packing(const Params& params, bool& loaded, const core::Monitor& monitor) {
-  const std::filesystem::path file = params.checkpoints / "packing.cdem";
-  const std::string identity = describe(params.packing);
-  if (params.resume && !params.checkpoints.empty() && std::filesystem::exists(file)) {
-    io::PackingFile kept = io::load_packing(file);
-    if (kept.parameters == identity) {
-      loaded = true;
-      packing::LubachevskyStillinger::Report report;
-      report.density = kept.particles.solid_volume() / kept.box.volume();
-      return {std::move(kept.particles), kept.box, report};
-    }
-  }
-  auto packing = packing::LubachevskyStillinger(params.packing).pack(monitor);
-  const bool usable = packing.report.reason == packing::StopReason::pressure_limit &&
-                      packing.report.density >= 0.9 * params.packing.density;
-  if (!usable)
-    packing.report.require_reached();
-  if (!params.checkpoints.empty())
-    io::save_packing(file, packing.particles, packing.box, identity);
-  return packing;
+/// The packing; kept beside the checkpoints where there is no cache. One that jams up to a tenth below the density asked for
+/// is used all the same, and its report says so; any other is an error.
+inline ObtainedPacking<packing::LubachevskyStillinger> make_packing(const Params& params,
+                                                                    const core::Monitor& monitor) {
+  const auto judge = [&](const packing::LubachevskyStillinger::Report& report) {
+    const bool usable = report.reason == packing::StopReason::pressure_limit &&
+                        report.density >= 0.9 * params.packing.density;
+    if (!usable)
+      report.require_reached();
+  };
+  const auto& cache = params.source.cache.empty() ? params.checkpoints : params.source.cache;
+  return obtain_packing<packing::LubachevskyStillinger>(params.packing, {params.source.file, cache}, judge,
+                                                        monitor);
 }
 
 /// Everything that a run of one material depends on: a checkpoint with the same text belongs to the same run.
 inline std::string describe(const Params& params) {
   std::ostringstream text;
   text.precision(17);
-  text << describe(params.packing) << "coordination = " << params.coordination
-       << "\naxis = " << core::name_of(params.axis) << "\nvelocity = " << params.velocity
-       << "\nsafety = " << params.safety << "\ndamping_ratio = " << params.damping_ratio
-       << "\nscaling = " << static_cast<int>(params.scaling) << "\ninterval = " << params.convergence.interval
-       << "\ntolerance = " << params.convergence.tolerance << '\n';
+  text << packing_identity<packing::LubachevskyStillinger>(params.packing, params.source)
+       << "coordination = " << params.coordination << "\naxis = " << core::name_of(params.axis)
+       << "\nvelocity = " << params.velocity << "\nsafety = " << params.safety
+       << "\ndamping_ratio = " << params.damping_ratio << "\nscaling = " << static_cast<int>(params.scaling)
+       << "\ninterval = " << params.convergence.interval << "\ntolerance = " << params.convergence.tolerance
+       << '\n';
   return text.str();
 }
 
@@ -351,14 +320,14 @@ inline MaterialResult pull(const Material& material, const Params& params, const
 inline Result run(const Params& params, const core::Monitor& monitor = {}) {
   params.validate();
   core::ThreadPool pool(params.threads);
-  bool loaded = false;
-  auto packing = detail::make_packing(params, loaded, monitor);
+  auto [packing, loaded, reported] = detail::make_packing(params, monitor);
   simulation::Specimen specimen =
       simulation::make_specimen(packing.particles, packing.box, params.coordination, pool);
   const boundary::SymmetricTension tension{params.axis, params.velocity, specimen.gap()};
   auto setup = tension.apply(specimen.particles, specimen.network, specimen.box);
   Result result{packing.report,
                 loaded,
+                reported,
                 std::move(specimen),
                 std::move(setup),
                 {},

@@ -32,10 +32,12 @@
 #include <cdem/io/bonds_vtu.hpp>
 #include <cdem/io/checkpoint.hpp>
 #include <cdem/io/csv.hpp>
+#include <cdem/io/from_file.hpp>
 #include <cdem/io/interrupt.hpp>
 #include <cdem/io/output_directory.hpp>
 #include <cdem/io/packing_file.hpp>
 #include <cdem/io/packing_state.hpp>
+#include <cdem/io/packing_quality.hpp>
 #include <cdem/io/particles_vtu.hpp>
 #include <cdem/io/results.hpp>
 #include <cdem/io/specimens_vtu.hpp>
@@ -47,9 +49,12 @@
 #include <cdem/network/coordination.hpp>
 #include <cdem/network/kd_tree.hpp>
 #include <cdem/network/neighbour_search.hpp>
+#include <cdem/packing/lattice.hpp>
 #include <cdem/packing/lubachevsky_stillinger.hpp>
 #include <cdem/packing/packing_generator.hpp>
 #include <cdem/packing/soft_spheres.hpp>
+#include <cdem/packing/quality.hpp>
+#include <cdem/packing/tiled.hpp>
 #include <cdem/particles/constraints.hpp>
 #include <cdem/particles/inertia.hpp>
 #include <cdem/particles/motion.hpp>

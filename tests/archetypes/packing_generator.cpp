@@ -1,6 +1,7 @@
 // The least that a packing generator is, with the template that it returns.
 
 #include <cdem/packing/packing_generator.hpp>
+#include <cdem/packing/tiled.hpp>
 
 namespace archetype {
 
@@ -36,3 +37,4 @@ template double density_of<Generator>(const Generator::Parameters&);
 } // namespace archetype
 
 template struct cdem::packing::Packing<archetype::ReportOfGenerator>;
+template class cdem::packing::Tiled<archetype::Generator>;

@@ -158,7 +158,7 @@ class BadOptions(Sample):
     """A stand-in for an example, which answers as it should or in one way that it should not."""
 
     GOOD = "sys.stderr.write(f'bad option or value: {sys.argv[1:]}\\n'); sys.exit(2)"
-    HELP = "--quick --particles --seed --threads --out"
+    HELP = "--quick --particles --seed --threads --out --packing --cache"
 
     def program(self, answer, help_text=HELP):
         file = self.write("program", f"#!{sys.executable}", "import sys",

@@ -46,7 +46,7 @@ concept Packs = requires(G generator, const core::Monitor& monitor) {
   { generator.pack(monitor) } -> std::same_as<Packing<typename G::Report>>;
 };
 
-/// A way to fill a box with spheres. Models: LubachevskyStillinger, SoftSpheres.
+/// A way to fill a box with spheres. Models: LubachevskyStillinger, SoftSpheres, Lattice, Tiled, io::FromFile.
 template <class G>
 concept PackingGenerator = HasParameters<G> && HasDensityReport<G> && Packs<G>;
 

@@ -218,7 +218,8 @@ TEST_CASE("A packing is loaded as it was saved") {
   const TemporaryFolder folder;
   const auto particles = some_particles(1001);
   geometry::Box box{Vec3(-0.5, 0, 0), Vec3(1, 2, 3), {true, false, true}};
-  io::save_packing(folder / "p.cdem", particles, box, "seed = 7\n");
+  io::save_packing(folder / "p.cdem", particles, box,
+                   {.parameters = "seed = 7\n", .report = "density = 0.6\n"});
   const io::PackingFile back = io::load_packing(folder / "p.cdem");
   CHECK(back.particles.position == particles.position);
   CHECK(back.particles.radius == particles.radius);
@@ -227,6 +228,44 @@ TEST_CASE("A packing is loaded as it was saved") {
   CHECK(back.box.upper == box.upper);
   CHECK(back.box.periodic == box.periodic);
   CHECK(back.parameters == "seed = 7\n");
+  CHECK(back.report == "density = 0.6\n");
+}
+
+TEST_CASE("A compact packing is half as long and as near as it says; equal radii and phase 0 take no room") {
+  const TemporaryFolder folder;
+  geometry::Box box{Vec3(-1, 0, 2), Vec3(1, 4, 3), {true, true, false}};
+  auto particles = some_particles(3000);
+  for (std::size_t i = 0; i < particles.size(); ++i) // inside the walls, anywhere along the periodic axes
+    particles.position[i].z() = 2 + static_cast<double>(i) / 2999;
+  std::fill(particles.phase.begin(), particles.phase.end(), PhaseIndex{0});
+  io::save_packing(folder / "all.cdem", particles, box);
+  io::save_packing(folder / "compact.cdem", particles, box, {.digits = io::PackingDigits::compact});
+  const auto all = std::filesystem::file_size(folder / "all.cdem");
+  const auto compact = std::filesystem::file_size(folder / "compact.cdem");
+  CHECK(all < 3000 * 32 + 1000);
+  CHECK(compact < 3000 * 16 + 1000);
+  const io::PackingFile back = io::load_packing(folder / "compact.cdem");
+  REQUIRE(back.particles.size() == 3000);
+  CHECK(back.particles.phase == particles.phase);
+  const Vec3 off = 0x1p-33 * box.size() * (1 + 1e-6);
+  for (std::size_t i = 0; i < 3000; ++i) {
+    const Vec3 difference = box.minimum_image(back.particles.position[i] - particles.position[i]).cwiseAbs();
+    REQUIRE((difference.array() <= off.array() + 1e-15).all());
+    REQUIRE(back.particles.radius[i] == doctest::Approx(particles.radius[i]).epsilon(6e-8));
+  }
+
+  std::fill(particles.radius.begin(), particles.radius.end(), 0.1);
+  io::save_packing(folder / "equal.cdem", particles, box);
+  CHECK(std::filesystem::file_size(folder / "equal.cdem") < 3000 * 24 + 1000);
+  CHECK(io::load_packing(folder / "equal.cdem").particles.radius == particles.radius);
+
+  particles.position[7].z() = 3.5; // behind a wall
+  CHECK(contains(message_of<core::InvalidInput>([&] {
+                   io::save_packing(folder / "x.cdem", particles, box,
+                                    {.digits = io::PackingDigits::compact});
+                 }),
+                 "position z of particle 7 = 3.5"));
+  CHECK_FALSE(std::filesystem::exists(folder / "x.cdem"));
 }
 
 TEST_CASE("What is no packing is neither saved nor loaded") {

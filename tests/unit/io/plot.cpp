@@ -33,6 +33,19 @@ void write_angles(const std::filesystem::path& path) {
   csv.commit();
 }
 
+void write_isotropy(const std::filesystem::path& path) {
+  io::CsvWriter csv(path,
+                    {"cov", "particles", "anisotropy", "anisotropy_yz", "anisotropy_zx", "anisotropy_xy",
+                     "anisotropy_chance", "anisotropy_printed", "eps", "eps_cut", "eps_printed"});
+  for (const double cov : {0.0, 0.3})
+    for (const int particles : {10000, 100000}) {
+      const double chance = 0.1 / std::sqrt(particles);
+      csv.row(cov, particles, 1.1 * chance, chance, 1.1 * chance, 1.2 * chance, chance,
+              particles == 10000 ? 1.3e-3 : std::nan(""), 1e-3, 2e-3, std::nan(""));
+    }
+  csv.commit();
+}
+
 void write_specimens(const std::filesystem::path& path) {
   const stress::tessellation::Hexahedra tessellation(geometry::Box::cube(0.01, false), {4, 5, 6});
   stress::StressField field;
@@ -58,6 +71,7 @@ int main(int argc, char** argv) {
   write_curve(folder / "alumina_convergence.csv");
   write_curve(folder / "silica_convergence.csv");
   write_angles(folder / "angles.csv");
+  write_isotropy(folder / "isotropy.csv");
   write_specimens(folder / "alumina_specimens.vtu");
   io::Results results;
   results.add({.quantity = "alumina.youngs_modulus",
