@@ -12,6 +12,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -128,9 +129,10 @@ public:
         motion_.size() == problem_.forces.particle_count(), "number of displacements", motion_.size(),
         "the number of particles, " + std::to_string(problem_.forces.particle_count()) + ", is expected");
     monitor_.report({"static multigrid", 0, "set-up"});
-    find_units();
-    support_ = detail::find_support(problem_, units_.length);
-    expect_resisted_loads();
+    auto bonds = std::make_unique<const detail::Bonds<Forces>>(problem_.forces, pool_);
+    units_ = bonds->units();
+    support_ = detail::find_support(problem_, *bonds);
+    expect_resisted_loads(*bonds);
     count_floppy_modes();
     report_.rattlers = support_.rattlers;
     report_.floating_clusters = support_.floating_clusters;
@@ -153,8 +155,8 @@ public:
     if (report_.floppy_modes_at_least > 0 || support_.loose_clusters > 0 || !support_.drifting.empty() ||
         has_free_channels_)
       parameters.shift = 1e-6;
-    detail::Hierarchy hierarchy(detail::BondGraph<Forces>(problem_.forces, support_.held, units_), parameters,
-                                pool_);
+    detail::Hierarchy hierarchy(detail::BondGraph<Forces>(*bonds, support_.held), parameters, pool_);
+    bonds.reset();
     report_.setup_seconds = seconds_since(start);
 
     const auto solve_start = Clock::now();
@@ -171,31 +173,14 @@ private:
     return std::chrono::duration<double>(Clock::now() - start).count();
   }
 
-  void find_units() {
-    double length = 0, stiffness = 0;
-    std::size_t stiff = 0;
-    for (BondIndex b = 0; b < problem_.forces.bond_count(); ++b) {
-      const auto& k = problem_.forces.stiffness(b);
-      if (!detail::is_stiff(k))
-        continue;
-      ++stiff;
-      length += problem_.forces.length(b);
-      stiffness += k.normal;
-    }
-    if (stiff > 0)
-      units_.length = length / static_cast<double>(stiff);
-    if (stiffness > 0)
-      units_.stiffness = stiffness / static_cast<double>(stiff);
-  }
-
-  void expect_resisted_loads() const {
+  void expect_resisted_loads(const detail::Bonds<Forces>& bonds) const {
     if (!problem_.load)
       return;
     for (std::uint32_t i = 0; i < support_.held.size(); ++i) {
       const auto& load = (*problem_.load)[i];
       if (load.linear().isZero(0) && load.angular().isZero(0))
         continue;
-      const auto block = problem_.forces.diagonal_block(i);
+      const detail::Matrix6 block = bonds.stiffness_of_particle(i);
       for (int d = 0; d < 6; ++d)
         core::expect(load[d] == 0 || support_.held[i] >> d & 1 || block(d, d) > 0,
                      (d < 3 ? "force on particle " : "moment on particle ") + std::to_string(i) + " along " +

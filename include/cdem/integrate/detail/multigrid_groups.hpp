@@ -30,13 +30,16 @@ struct Groups {
 /// connected, compact, and do not cross an interface that is much softer than what it joins. A group that
 /// could not grow to half its size joins the one it is tied to best.
 ///
+/// First of all come the nodes that hang loosely, see group_hanging().
+///
 /// @tparam Graph  size(), is_held(node), for_each_link(node, visit(link, neighbour, branch)), weight(link)
 /// @complexity    O(links), serial; the order of the nodes alone decides the outcome
 template <class Graph>
 class GroupGrower {
 public:
-  GroupGrower(const Graph& graph, std::uint32_t size, double weakest_tie)
-      : graph_(graph), size_(size), weakest_tie_(weakest_tie), total_weight_(graph.size(), 0) {
+  /// @param hanging  the most links of a node that hangs; 0 for no such nodes
+  GroupGrower(const Graph& graph, std::uint32_t size, double weakest_tie, std::uint32_t hanging = 0)
+      : graph_(graph), size_(size), weakest_tie_(weakest_tie), hanging_(hanging), total_weight_(graph.size(), 0) {
     groups_.group_of.assign(graph.size(), none);
     groups_.arm.assign(graph.size(), Vec3::Zero());
     for (std::uint32_t node = 0; node < graph.size(); ++node)
@@ -45,6 +48,8 @@ public:
   }
 
   Groups grow() {
+    if (hanging_ > 0)
+      group_hanging();
     for (std::uint32_t seed = 0; seed < graph_.size(); ++seed) {
       if (graph_.is_held(seed) || groups_.group_of[seed] != none)
         continue;
@@ -62,6 +67,63 @@ private:
     double tie; ///< weight of its links to the group
     Vec3 position;
   };
+
+  /// Makes groups of the nodes that hang: those of trees, that one link after the other ties to the rest, and those
+  /// with no more than `hanging_` links outside such trees.
+  ///
+  /// Two or more of them that follow each other bend about the links that end them like a chain about its hinges. Where
+  /// bending is soft, that is far softer than what a smoother of single nodes sees, and a rigid group that holds
+  /// them together with what they hang from does not have the motion. As groups of their own they do.
+  void group_hanging() {
+    std::vector<std::uint32_t> ties(graph_.size(), 0), leaves;
+    std::vector<bool> hangs(graph_.size(), false);
+    for (std::uint32_t node = 0; node < graph_.size(); ++node) {
+      graph_.for_each_link(
+          node, [&](auto link, std::uint32_t, const auto&) { ties[node] += ties_to(node, link) ? 1U : 0U; });
+      if (ties[node] == 1 && !graph_.is_held(node))
+        leaves.push_back(node);
+    }
+    while (!leaves.empty()) {
+      const std::uint32_t leaf = leaves.back();
+      leaves.pop_back();
+      hangs[leaf] = true;
+      graph_.for_each_link(leaf, [&](auto link, std::uint32_t other, const auto&) {
+        if (other != none && !hangs[other] && ties_to(other, link) && --ties[other] == 1)
+          leaves.push_back(other);
+      });
+    }
+    for (std::uint32_t node = 0; node < graph_.size(); ++node)
+      hangs[node] = !graph_.is_held(node) && ties[node] > 0 && ties[node] <= hanging_;
+    for (std::uint32_t seed = 0; seed < graph_.size(); ++seed) {
+      if (!hangs[seed])
+        continue;
+      members_.clear();
+      const auto take = [&](std::uint32_t node, const Vec3& position) {
+        hangs[node] = false;
+        groups_.group_of[node] = groups_.count;
+        groups_.arm[node] = position;
+        members_.push_back(node);
+      };
+      take(seed, Vec3::Zero());
+      for (std::size_t next = 0; next < members_.size(); ++next) {
+        const std::uint32_t node = members_[next];
+        graph_.for_each_link(node, [&](auto link, std::uint32_t other, const auto& branch) {
+          if (other != none && hangs[other] && members_.size() < size_ && ties_to(node, link) && ties_to(other, link))
+            take(other, groups_.arm[node] + branch());
+        });
+      }
+      if (members_.size() > 1)
+        ++groups_.count;
+      else
+        groups_.group_of[seed] = none; // by itself it is no worse than any other
+    }
+  }
+
+  /// Whether a link is no negligible part of what ties the node.
+  template <class Link>
+  bool ties_to(std::uint32_t node, const Link& link) const {
+    return graph_.weight(link) > weakest_tie_ * total_weight_[node];
+  }
 
   void grow_from(std::uint32_t seed) {
     members_.clear();
@@ -156,6 +218,7 @@ private:
   const Graph& graph_;
   std::uint32_t size_;
   double weakest_tie_;
+  std::uint32_t hanging_;
   std::vector<double> total_weight_; ///< [nodes] of all the links of a node
   Groups groups_;
   std::vector<std::uint32_t> members_;
