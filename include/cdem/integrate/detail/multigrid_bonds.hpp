@@ -56,10 +56,10 @@ public:
   };
 
   /// @throws core::InvalidInput if the bonds are more than 32 bits number
-  /// @complexity O(bonds); 20 bytes a bond and 8 a particle
-  Bonds(const Forces& forces, core::ThreadPool& pool) : forces_(forces), weight_(forces.bond_count()) {
-    core::expect(forces.bond_count() < std::numeric_limits<Number>::max(), "number of bonds", forces.bond_count(),
-                 "fewer than 2^32 can be solved for");
+  /// @complexity O(bonds); 32 bytes a bond and 8 a particle
+  Bonds(const Forces& forces, core::ThreadPool& pool) : forces_(forces), ties_(forces.bond_count()) {
+    core::expect(forces.bond_count() < std::numeric_limits<Number>::max(), "number of bonds",
+                 forces.bond_count(), "fewer than 2^32 can be solved for");
     find_units(pool);
     list_ends();
   }
@@ -73,10 +73,17 @@ public:
     return {ends_.data() + begin_[particle], ends_.data() + begin_[particle + 1]};
   }
   /// How strongly a bond ties its ends, 0 for one that does not resist slip.
-  double weight(Number b) const { return static_cast<double>(weight_[b]); }
-  /// From the particle to the bond's other end.
-  Vec3 branch(std::uint32_t particle, Number b) const {
-    return ((forces_.ends(b).first == particle ? 1 : -1) * forces_.length(b) / units_.length) * forces_.direction(b);
+  double weight(Number b) const { return static_cast<double>(ties_[b].weight); }
+  /// From the particle to the bond's other end, rounded to single precision.
+  Vec3 branch(std::uint32_t particle, End end) const {
+    const auto& branch = ties_[end.bond].branch;
+    return (particle < end.neighbour ? 1 : -1) *
+           Eigen::Vector3f(branch[0], branch[1], branch[2]).cast<double>();
+  }
+  /// The same, not rounded.
+  Vec3 exact_branch(std::uint32_t particle, End end) const {
+    const bool outward = forces_.ends(end.bond).first == particle;
+    return ((outward ? 1 : -1) * forces_.length(end.bond) / units_.length) * forces_.direction(end.bond);
   }
 
   BondStiffness stiffness(Number b) const {
@@ -90,8 +97,8 @@ public:
   /// Stiffness of a particle with all others at rest.
   Matrix6 stiffness_of_particle(std::uint32_t particle) const {
     Matrix6 sum = Matrix6::Zero();
-    for (const auto [neighbour, bond] : of(particle))
-      add_carried(sum, stiffness(bond), 0.5 * branch(particle, bond));
+    for (const End end : of(particle))
+      add_carried(sum, stiffness(end.bond), 0.5 * exact_branch(particle, end));
     return sum;
   }
 
@@ -107,11 +114,16 @@ public:
   }
 
   std::size_t bytes() const {
-    return weight_.size() * sizeof(float) + begin_.size() * sizeof(begin_[0]) + ends_.size() * sizeof(End);
+    return ties_.size() * sizeof(Tie) + begin_.size() * sizeof(begin_[0]) + ends_.size() * sizeof(End);
   }
 
 private:
-  /// Also the bonds' weights.
+  struct Tie {
+    float branch[3]; ///< from the end of lower number
+    float weight;    ///< against slip; not_stiff where the bond resists nothing
+  };
+
+  /// Also the bonds' ties.
   void find_units(core::ThreadPool& pool) {
     struct Sums {
       double length = 0, stiffness = 0, count = 0;
@@ -139,18 +151,23 @@ private:
       units_.length = sums.length / sums.count;
     if (sums.stiffness > 0)
       units_.stiffness = sums.stiffness / sums.count;
-    core::parallel_for(pool, weight_.size(), [&](std::size_t begin, std::size_t end) {
+    core::parallel_for(pool, ties_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         const auto& k = forces_.stiffness(b);
-        weight_[b] = is_stiff(k) ? static_cast<float>((k.normal + 2 * k.tangential) / units_.stiffness) : not_stiff;
+        const auto [i, j] = forces_.ends(b);
+        const Vec3 branch = ((i < j ? 1 : -1) * forces_.length(b) / units_.length) * forces_.direction(b);
+        for (int d = 0; d < 3; ++d)
+          ties_[b].branch[d] = static_cast<float>(branch[d]);
+        ties_[b].weight =
+            is_stiff(k) ? static_cast<float>((k.normal + 2 * k.tangential) / units_.stiffness) : not_stiff;
       }
     });
   }
 
   void list_ends() {
     begin_.assign(forces_.particle_count() + 1, 0);
-    for (Number b = 0; b < weight_.size(); ++b)
-      if (weight_[b] >= 0) {
+    for (Number b = 0; b < ties_.size(); ++b)
+      if (ties_[b].weight >= 0) {
         const auto [i, j] = forces_.ends(b);
         ++begin_[i + std::size_t{1}];
         ++begin_[j + std::size_t{1}];
@@ -158,8 +175,9 @@ private:
     for (std::size_t i = 1; i < begin_.size(); ++i)
       begin_[i] += begin_[i - 1];
     ends_.resize(begin_.back());
-    for (Number b = static_cast<Number>(weight_.size()); b-- > 0;) // from the last, so that begin_ ends up right
-      if (weight_[b] >= 0) {
+    for (Number b = static_cast<Number>(ties_.size());
+         b-- > 0;) // from the last, so that begin_ ends up right
+      if (ties_[b].weight >= 0) {
         const auto [i, j] = forces_.ends(b);
         ends_[--begin_[i + std::size_t{1}]] = {j, b};
         ends_[--begin_[j + std::size_t{1}]] = {i, b};
@@ -172,7 +190,7 @@ private:
 
   const Forces& forces_;
   Units units_;
-  LevelArray<float> weight_;         ///< [bonds] not_stiff where a bond resists nothing
+  LevelArray<Tie> ties_;             ///< [bonds]
   std::vector<std::uint64_t> begin_; ///< [particles + 1]
   LevelArray<End> ends_;             ///< [2 bonds that resist]
 };

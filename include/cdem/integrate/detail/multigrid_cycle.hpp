@@ -69,32 +69,34 @@ void start_smoothing(Level<Links>& level, int steps, core::ThreadPool& pool) {
 template <class Links>
 void smooth(Level<Links>& level, int j, int steps, core::ThreadPool& pool) {
   const float gain = smoothing_gain(j, steps);
-  level.network.for_each_block(level.x, pool, [&](std::size_t block, NodeIndex, NodeIndex, const Field& force) {
-    RelaxedBlock relaxed = relaxed_block(level, block, gain);
-    relaxed.force = lines(force);
-    with_loops([&](auto loops) { loops.relax(relaxed); });
-  });
+  level.network.for_each_block(level.x, pool,
+                               [&](std::size_t block, NodeIndex, NodeIndex, const Field& force) {
+                                 RelaxedBlock relaxed = relaxed_block(level, block, gain);
+                                 relaxed.force = lines(force);
+                                 with_loops([&](auto loops) { loops.relax(relaxed); });
+                               });
   std::swap(level.x, level.next);
 }
 
 /// Forces and moments of the residual b - K x on each group, about its centre.
 template <class Links>
 void restrict_residual(const Level<Links>& level, Field& group_rhs, core::ThreadPool& pool) {
-  level.network.for_each_block(level.x, pool, [&](std::size_t block, NodeIndex begin, NodeIndex, const Field& force) {
-    for (NodeIndex group = level.block_group[block]; group < level.block_group[block + 1]; ++group) {
-      Twist sum;
-      for (NodeIndex node = level.group_begin[group]; node < level.group_begin[group + 1]; ++node) {
-        Twist residual = Twist::load(level.rhs[node].component);
-        residual += Twist::load(force[node - begin].component);
-        if (!level.held.empty() && level.held[node] != 0)
-          residual = free_part(residual, level.held[node]);
-        const Float4 arm = load4(level.arm.data() + 4 * std::size_t{node});
-        residual.angular += cross(arm, residual.linear);
-        sum += residual;
-      }
-      sum.clean().store(group_rhs[group].component);
-    }
-  });
+  level.network.for_each_block(
+      level.x, pool, [&](std::size_t block, NodeIndex begin, NodeIndex, const Field& force) {
+        for (NodeIndex group = level.block_group[block]; group < level.block_group[block + 1]; ++group) {
+          Twist sum;
+          for (NodeIndex node = level.group_begin[group]; node < level.group_begin[group + 1]; ++node) {
+            Twist residual = Twist::load(level.rhs[node].component);
+            residual += Twist::load(force[node - begin].component);
+            if (!level.held.empty() && level.held[node] != 0)
+              residual = free_part(residual, level.held[node]);
+            const Float4 arm = load4(level.arm.data() + 4 * std::size_t{node});
+            residual.angular += cross(arm, residual.linear);
+            sum += residual;
+          }
+          sum.clean().store(group_rhs[group].component);
+        }
+      });
 }
 
 /// x += rigid motion of each node's group.
@@ -144,11 +146,12 @@ public:
   Hierarchy(const BondGraph<Forces>& bonds, const Parameters& parameters, core::ThreadPool& pool)
       : parameters_(parameters.cycle) {
     std::vector<Groups> groups; // of the particles, of their groups, ...
-    groups.push_back(GroupGrower(bonds, parameters.group_size, parameters.weakest_tie, parameters.hanging).grow());
+    groups.push_back(
+        grow_groups(bonds, parameters.group_size, parameters.weakest_tie, parameters.hanging, pool));
     std::vector<GroupGraph> graphs;
     graphs.push_back(group_graph(bonds, groups[0], parameters.held_stiffness, pool));
     while (graphs.back().size() > parameters.coarsest_size) {
-      Groups next = GroupGrower(graphs.back(), parameters.group_size, parameters.weakest_tie).grow();
+      Groups next = grow_groups(graphs.back(), parameters.group_size, parameters.weakest_tie, 0, pool);
       if (next.count > 0.9 * graphs.back().size())
         break; // nothing left to join: many bodies, each of one group
       groups.push_back(std::move(next));
@@ -167,19 +170,20 @@ public:
       position = positions_in(order, graphs[k].size(), none);
       graphs.pop_back();
     }
-    order_ = order_by_group(groups[0], position);
-    particles_ = make_level(bonds, &groups[0], order_, nodes_per_block, pool);
-    particles_.held.resize(order_.size());
-    for (std::size_t k = 0; k < order_.size(); ++k)
-      particles_.held[k] = bonds.held(order_[k]);
+    const std::vector<std::uint32_t> order = order_by_group(groups[0], position);
+    particles_ = make_level(bonds, &groups[0], order, nodes_per_block, pool);
+    particles_.held.resize(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k)
+      particles_.held[k] = bonds.held(order[k]);
+    place_ = positions_in(order, bonds.size(), none);
     const std::size_t coarsest_nodes =
         levels_.empty() ? particles_.group_begin.size() - 1 : levels_.back().level.group_begin.size() - 1;
     coarsest_rhs_.resize(coarsest_nodes);
     coarsest_x_.resize(coarsest_nodes);
   }
 
-  /// Particle at each place of the fields.
-  const std::vector<std::uint32_t>& order() const { return order_; }
+  /// [particles] place of each in the fields; none for those held altogether.
+  const std::vector<std::uint32_t>& place() const { return place_; }
   /// Right-hand side, to be filled; changed by nobody.
   Field& rhs() { return particles_.rhs; }
   /// What precondition() made of it.
@@ -300,7 +304,7 @@ private:
 
   CycleParameters parameters_;
   Level<BondLinks> particles_;
-  std::vector<std::uint32_t> order_; ///< [nodes of the first level] their particles
+  std::vector<std::uint32_t> place_; ///< [particles] their nodes on the first level
   std::vector<GroupLevel> levels_;   ///< of groups, without the coarsest
   CoarsestSolver coarsest_;
   Field coarsest_rhs_, coarsest_x_;

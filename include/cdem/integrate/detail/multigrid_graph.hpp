@@ -30,9 +30,9 @@ public:
   /// visit(link, neighbour or none, branch): branch() goes from the node to the neighbour.
   template <class Visit>
   void for_each_link(std::uint32_t node, Visit&& visit) const {
-    for (const auto [neighbour, bond] : bonds_.of(node))
-      visit(bond, is_held(neighbour) ? none : neighbour,
-            [this, node, b = bond]() -> Vec3 { return bonds_.branch(node, b); });
+    for (const auto end : bonds_.of(node))
+      visit(end.bond, is_held(end.neighbour) ? none : end.neighbour,
+            [this, node, end]() -> Vec3 { return bonds_.branch(node, end); });
   }
 
   BondStiffness stiffness(Link link) const { return bonds_.stiffness(link); }
@@ -53,7 +53,8 @@ private:
 inline void pack_symmetric(const Matrix6& matrix, float* upper, std::size_t lane) {
   for (int row = 0; row < 6; ++row)
     for (int column = row; column < 6; ++column)
-      upper[8 * static_cast<std::size_t>(upper_entry(row, column)) + lane] = static_cast<float>(matrix(row, column));
+      upper[8 * static_cast<std::size_t>(upper_entry(row, column)) + lane] =
+          static_cast<float>(matrix(row, column));
 }
 
 /// The links between groups, each once, by first group.

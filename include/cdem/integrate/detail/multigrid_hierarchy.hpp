@@ -19,12 +19,12 @@ template <class LinkType>
 struct Level {
   using Links = LinkType;
   LinkedNodes<Links> network;
-  LevelArray<float> inverse_diagonal;      ///< [eights of nodes x 21 x 8], see multiply_symmetric()
-  std::vector<std::size_t> inverse_begin;  ///< [blocks] where each block's begins
-  std::vector<HeldMask> held;          ///< [nodes] on the level of the particles, else empty
-  std::vector<NodeIndex> group_begin;  ///< [groups + 1] first node of each group; empty on the coarsest level
-  LevelArray<float> arm;               ///< [nodes x 4] from the group's centre, last of each zero
-  std::vector<NodeIndex> block_group;  ///< [blocks + 1] first group of each block of the network
+  LevelArray<float> inverse_diagonal;     ///< [eights of nodes x 21 x 8], see multiply_symmetric()
+  std::vector<std::size_t> inverse_begin; ///< [blocks] where each block's begins
+  std::vector<HeldMask> held;             ///< [nodes] on the level of the particles, else empty
+  std::vector<NodeIndex> group_begin; ///< [groups + 1] first node of each group; empty on the coarsest level
+  LevelArray<float> arm;              ///< [nodes x 4] from the group's centre, last of each zero
+  std::vector<NodeIndex> block_group; ///< [blocks + 1] first group of each block of the network
 
   Field rhs, x, next; ///< [nodes + spare_lines], the first spare one the ground
   NodeIndex size() const { return network.size(); }
@@ -109,7 +109,8 @@ struct BlockLinks {
     leaving.clear();
     for (NodeIndex row = begin; row < end; ++row)
       graph.for_each_link(order[row], [&](auto link, std::uint32_t neighbour, const auto& branch) {
-        const NodeIndex other = neighbour == none ? static_cast<NodeIndex>(order.size()) : position[neighbour];
+        const NodeIndex other =
+            neighbour == none ? static_cast<NodeIndex>(order.size()) : position[neighbour];
         if (other < begin || other >= end)
           leaving.push_back({row, other, link, branch()});
         else if (other > row)

@@ -46,8 +46,8 @@ struct Twist8 {
 
 /// From eight lines of memory, a node each (x y z 0 a b c 0), to one node in each lane.
 [[gnu::always_inline]] inline void from_lines(const Float8 (&line)[8], Twist8& twist) {
-  const auto quarter = [](const Float8& r0, const Float8& r1, const Float8& r2, const Float8& r3, Float8& first,
-                          Float8& second, Float8& third) __attribute__((always_inline)) {
+  const auto quarter = [](const Float8& r0, const Float8& r1, const Float8& r2, const Float8& r3,
+                          Float8& first, Float8& second, Float8& third) __attribute__((always_inline)) {
     const Float8 t0 = __builtin_shufflevector(r0, r1, 0, 8, 1, 9, 4, 12, 5, 13);
     const Float8 t1 = __builtin_shufflevector(r0, r1, 2, 10, 3, 11, 6, 14, 7, 15);
     const Float8 t2 = __builtin_shufflevector(r2, r3, 0, 8, 1, 9, 4, 12, 5, 13);
@@ -75,8 +75,8 @@ struct Twist8 {
   const Float8 xa_high = __builtin_shufflevector(twist.x, twist.a, 4, 5, 6, 7, 12, 13, 14, 15);
   const Float8 yb_high = __builtin_shufflevector(twist.y, twist.b, 4, 5, 6, 7, 12, 13, 14, 15);
   const Float8 zc_high = __builtin_shufflevector(twist.z, twist.c, 4, 5, 6, 7, 12, 13, 14, 15);
-  const auto quarter = [](const Float8& xa, const Float8& yb, const Float8& zc, Float8& r0, Float8& r1, Float8& r2,
-                          Float8& r3) __attribute__((always_inline)) {
+  const auto quarter = [](const Float8& xa, const Float8& yb, const Float8& zc, Float8& r0, Float8& r1,
+                          Float8& r2, Float8& r3) __attribute__((always_inline)) {
     const Float8 zero{};
     const Float8 t0 = __builtin_shufflevector(xa, yb, 0, 8, 1, 9, 4, 12, 5, 13);
     const Float8 t1 = __builtin_shufflevector(xa, yb, 2, 10, 3, 11, 6, 14, 7, 15);
@@ -179,12 +179,17 @@ static_assert(sizeof(GroupLinks) == 8 * 104);
 /// @param x_first, x_second  the fields' lines that the numbers of the ends count from
 /// @param force              lines that the numbers of the first ends, and of the second where `both`, count from
 template <bool both, class Links>
-[[gnu::always_inline]] inline void act(const Links& links, const float* x_first, const float* x_second, float* force) {
+[[gnu::always_inline]] inline void act(const Links& links, const float* x_first, const float* x_second,
+                                       float* force) {
   Float8 line[8];
   Twist8 here, there, strain, action;
-  for_eight([&](std::size_t k) __attribute__((always_inline)) { load8(x_first + 8 * std::size_t{links.first[k]}, line[k]); });
+  for_eight([&](std::size_t k) __attribute__((always_inline)) {
+    load8(x_first + 8 * std::size_t{links.first[k]}, line[k]);
+  });
   from_lines(line, here);
-  for_eight([&](std::size_t k) __attribute__((always_inline)) { load8(x_second + 8 * std::size_t{links.second[k]}, line[k]); });
+  for_eight([&](std::size_t k) __attribute__((always_inline)) {
+    load8(x_second + 8 * std::size_t{links.second[k]}, line[k]);
+  });
   from_lines(line, there);
   Float8 dx, dy, dz;
   load8(links.half_branch[0].data(), dx);
@@ -235,12 +240,13 @@ struct LinkBlock {
 
 /// Forces of a block's links on its nodes, added to `force`; `block_x` and `force` begin at the block's first node.
 template <class Links>
-[[gnu::always_inline]] inline void act_all(const LinkBlock<Links>& block, const float* x, const float* block_x,
-                                           float* force) {
+[[gnu::always_inline]] inline void act_all(const LinkBlock<Links>& block, const float* x,
+                                           const float* block_x, float* force) {
   constexpr std::ptrdiff_t ahead = 6;
   const auto fetch = [&](const Links* links, const float* from) __attribute__((always_inline)) {
-    for_eight([&](std::size_t k)
-                  __attribute__((always_inline)) { __builtin_prefetch(from + 8 * std::size_t{links->second[k]}); });
+    for_eight([&](std::size_t k) __attribute__((always_inline)) {
+      __builtin_prefetch(from + 8 * std::size_t{links->second[k]});
+    });
   };
   for (const Links* links = block.begin; links != block.leaving; ++links) {
     fetch(links + (block.leaving - links > ahead ? ahead : 0), block_x);

@@ -57,7 +57,8 @@ struct LinkedNodes {
   void for_each_block(const Field& x, core::ThreadPool& pool, Body&& body) const {
     pool.for_each_block(blocks(), [&](std::size_t block) {
       const NodeIndex begin = block_begin[block], end = block_begin[block + 1];
-      Field force(end - begin + spare_lines); // the first spare one collects what links without stiffness exert
+      Field force(end - begin +
+                  spare_lines); // the first spare one collects what links without stiffness exert
       gather(block, x, force);
       body(block, begin, end, static_cast<const Field&>(force));
     });

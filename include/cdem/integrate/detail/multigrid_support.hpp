@@ -51,8 +51,9 @@ Components find_components(const Bonds<Forces>& bonds) {
     for (std::size_t next = 0; next < queue.size(); ++next) {
       const std::uint32_t i = queue[next];
       centre += parts.position[i];
-      for (const auto [j, bond] : bonds.of(i)) {
-        const Vec3 there = parts.position[i] + bonds.branch(i, bond);
+      for (const auto end : bonds.of(i)) {
+        const std::uint32_t j = end.neighbour;
+        const Vec3 there = parts.position[i] + bonds.exact_branch(i, end);
         if (parts.of[j] == none) {
           parts.of[j] = part;
           parts.position[j] = there;
