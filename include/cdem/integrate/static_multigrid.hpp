@@ -12,7 +12,9 @@
 
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cdem::integrate {
@@ -128,9 +130,10 @@ public:
         motion_.size() == problem_.forces.particle_count(), "number of displacements", motion_.size(),
         "the number of particles, " + std::to_string(problem_.forces.particle_count()) + ", is expected");
     monitor_.report({"static multigrid", 0, "set-up"});
-    find_units();
-    support_ = detail::find_support(problem_, units_.length);
-    expect_resisted_loads();
+    auto bonds = std::make_unique<const detail::Bonds<Forces>>(problem_.forces, pool_);
+    units_ = bonds->units();
+    support_ = detail::find_support(problem_, *bonds);
+    expect_resisted_loads(*bonds);
     count_floppy_modes();
     report_.rattlers = support_.rattlers;
     report_.floating_clusters = support_.floating_clusters;
@@ -153,8 +156,8 @@ public:
     if (report_.floppy_modes_at_least > 0 || support_.loose_clusters > 0 || !support_.drifting.empty() ||
         has_free_channels_)
       parameters.shift = 1e-6;
-    detail::Hierarchy hierarchy(detail::BondGraph<Forces>(problem_.forces, support_.held, units_), parameters,
-                                pool_);
+    detail::Hierarchy hierarchy(detail::BondGraph<Forces>(*bonds, support_.held), parameters, pool_);
+    bonds.reset();
     report_.setup_seconds = seconds_since(start);
 
     const auto solve_start = Clock::now();
@@ -171,31 +174,14 @@ private:
     return std::chrono::duration<double>(Clock::now() - start).count();
   }
 
-  void find_units() {
-    double length = 0, stiffness = 0;
-    std::size_t stiff = 0;
-    for (BondIndex b = 0; b < problem_.forces.bond_count(); ++b) {
-      const auto& k = problem_.forces.stiffness(b);
-      if (!detail::is_stiff(k))
-        continue;
-      ++stiff;
-      length += problem_.forces.length(b);
-      stiffness += k.normal;
-    }
-    if (stiff > 0)
-      units_.length = length / static_cast<double>(stiff);
-    if (stiffness > 0)
-      units_.stiffness = stiffness / static_cast<double>(stiff);
-  }
-
-  void expect_resisted_loads() const {
+  void expect_resisted_loads(const detail::Bonds<Forces>& bonds) const {
     if (!problem_.load)
       return;
     for (std::uint32_t i = 0; i < support_.held.size(); ++i) {
       const auto& load = (*problem_.load)[i];
       if (load.linear().isZero(0) && load.angular().isZero(0))
         continue;
-      const auto block = problem_.forces.diagonal_block(i);
+      const detail::Matrix6 block = bonds.stiffness_of_particle(i);
       for (int d = 0; d < 6; ++d)
         core::expect(load[d] == 0 || support_.held[i] >> d & 1 || block(d, d) > 0,
                      (d < 3 ? "force on particle " : "moment on particle ") + std::to_string(i) + " along " +
@@ -287,14 +273,16 @@ private:
       pass_residual(hierarchy, norm);
       double scale = norm;
       while (norm > wanted) {
-        if (report_.iterations == parameters_.max_iterations)
+        if (report_.iterations == parameters_.max_iterations) {
+          move_along(pending_);
           fail(norm / reference);
+        }
         ++report_.iterations;
         hierarchy.precondition(pool_);
         const double work = find_direction(hierarchy, scale, curvature);
         problem_.forces.evaluate(direction_, image_, pool_);
         applications_ += 1;
-        curvature = -sum_over(hierarchy, [&](std::uint32_t i) { return inner(direction_[i], image_[i]); });
+        curvature = -sum_over_particles([&](std::size_t i) { return inner(direction_[i], image_[i]); });
         if (!(curvature > 0 && std::isfinite(curvature)))
           break;
         scale = norm;
@@ -302,6 +290,7 @@ private:
         report_.history.push_back(norm / reference);
         tell(norm, wanted, reference);
       }
+      move_along(pending_);
       const double before = true_norm;
       norm = true_norm = find_residual(motion_.displacement);
       if (true_norm > wanted && !(true_norm < 0.5 * before))
@@ -315,41 +304,38 @@ private:
   }
 
   template <class Term>
-  double sum_over(const detail::Hierarchy& hierarchy, Term&& term) {
-    const auto& order = hierarchy.order();
-    return core::parallel_sum(pool_, order.size(), 0.0, [&](std::size_t begin, std::size_t end) {
+  double sum_over_particles(Term&& term) {
+    return core::parallel_sum(pool_, residual_.size(), 0.0, [&](std::size_t begin, std::size_t end) {
       double sum = 0;
-      for (std::size_t k = begin; k < end; ++k)
-        sum += term(order[k]);
+      for (std::size_t i = begin; i < end; ++i)
+        sum += term(i);
       return sum;
     });
   }
 
   double norm_of_residual() {
-    return std::sqrt(
-        core::parallel_sum(pool_, residual_.size(), 0.0, [&](std::size_t begin, std::size_t end) {
-          double sum = 0;
-          for (std::size_t i = begin; i < end; ++i)
-            sum += squared(residual_[i]);
-          return sum;
-        }));
+    return std::sqrt(sum_over_particles([&](std::size_t i) { return squared(residual_[i]); }));
   }
 
   /// The residual over `scale` in the multigrid's units, in single precision.
   void pass_residual(detail::Hierarchy& hierarchy, double scale) {
-    core::parallel_for(pool_, hierarchy.order().size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k)
-        pass_residual(hierarchy, k, hierarchy.order()[k], scale);
+    core::parallel_for(pool_, residual_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        pass_residual(hierarchy, i, scale);
     });
   }
-  void pass_residual(detail::Hierarchy& hierarchy, std::size_t k, std::uint32_t i, double scale) {
-    hierarchy.rhs()[k].linear() = (residual_[i].linear() / scale).template cast<float>();
-    hierarchy.rhs()[k].angular() = (residual_[i].angular() / (scale * units_.length)).template cast<float>();
+  void pass_residual(detail::Hierarchy& hierarchy, std::size_t i, double scale) {
+    const std::uint32_t place = hierarchy.place()[i];
+    if (place == detail::none)
+      return;
+    hierarchy.rhs()[place].linear() = (residual_[i].linear() / scale).template cast<float>();
+    hierarchy.rhs()[place].angular() =
+        (residual_[i].angular() / (scale * units_.length)).template cast<float>();
   }
 
   /// direction_ = z + beta direction_, z the preconditioned residual, K-orthogonal to the direction before; returns r.z.
+  /// Before it changes, the step along the last direction that is still pending is taken.
   double find_direction(const detail::Hierarchy& hierarchy, double scale, double curvature) {
-    const auto& order = hierarchy.order();
     const double to_linear = scale / units_.stiffness, to_angular = to_linear / units_.length;
     struct Sums {
       double residual = 0, image = 0;
@@ -359,54 +345,62 @@ private:
         return *this;
       }
     };
-    const auto preconditioned = [&](std::size_t k) {
+    const auto preconditioned = [&](std::size_t i) {
       particles::Spatial<> z;
-      z.linear() = to_linear * hierarchy.result()[k].linear().template cast<double>();
-      z.angular() = to_angular * hierarchy.result()[k].angular().template cast<double>();
+      if (const std::uint32_t place = hierarchy.place()[i]; place != detail::none) {
+        z.linear() = to_linear * hierarchy.result()[place].linear().template cast<double>();
+        z.angular() = to_angular * hierarchy.result()[place].angular().template cast<double>();
+      }
       return z;
     };
     const Sums sums =
-        core::parallel_sum(pool_, order.size(), Sums{}, [&](std::size_t begin, std::size_t end) {
+        core::parallel_sum(pool_, residual_.size(), Sums{}, [&](std::size_t begin, std::size_t end) {
           Sums sum;
-          for (std::size_t k = begin; k < end; ++k) {
-            const particles::Spatial<> z = preconditioned(k);
-            sum.residual += inner(z, residual_[order[k]]);
-            sum.image -= inner(z, image_[order[k]]);
+          for (std::size_t i = begin; i < end; ++i) {
+            const particles::Spatial<> z = preconditioned(i);
+            sum.residual += inner(z, residual_[i]);
+            sum.image -= inner(z, image_[i]);
           }
           return sum;
         });
-    const double beta = curvature > 0 ? -sums.image / curvature : 0;
-    core::parallel_for(pool_, order.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        const particles::Spatial<> z = preconditioned(k);
-        auto& direction = direction_[order[k]];
-        for (int c = 0; c < 8; ++c)
+    const double beta = curvature > 0 ? -sums.image / curvature : 0, length = std::exchange(pending_, 0);
+    core::parallel_for(pool_, residual_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const particles::Spatial<> z = preconditioned(i);
+        auto& direction = direction_[i];
+        for (int c = 0; c < 8; ++c) {
+          motion_.displacement[i].component[c] += length * direction.component[c];
           direction.component[c] = z.component[c] + beta * direction.component[c];
+        }
       }
     });
     return sums.residual;
   }
 
-  /// Moves along the direction; returns the norm of the new residual and passes it on.
-  double step(detail::Hierarchy& hierarchy, double length, double scale) {
-    const auto& order = hierarchy.order();
-    return std::sqrt(core::parallel_sum(pool_, order.size(), 0.0, [&](std::size_t begin, std::size_t end) {
-      double sum = 0;
-      for (std::size_t k = begin; k < end; ++k) {
-        const std::uint32_t i = order[k];
+  /// Takes a step along the direction.
+  void move_along(double length) {
+    pending_ = 0;
+    core::parallel_for(pool_, residual_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
         for (int c = 0; c < 8; ++c)
           motion_.displacement[i].component[c] += length * direction_[i].component[c];
-        if (support_.held[i] == 0)
-          for (int c = 0; c < 8; ++c)
-            residual_[i].component[c] += length * image_[i].component[c];
-        else
-          for (int d = 0; d < 6; ++d)
-            if (!(support_.held[i] >> d & 1))
-              residual_[i][d] += length * image_[i][d];
-        sum += squared(residual_[i]);
-        pass_residual(hierarchy, k, i, scale);
-      }
-      return sum;
+    });
+  }
+
+  /// Takes a step along the direction, the displacement's share of it later; returns the norm of the new residual and
+  /// passes it on.
+  double step(detail::Hierarchy& hierarchy, double length, double scale) {
+    pending_ = length;
+    return std::sqrt(sum_over_particles([&](std::size_t i) {
+      if (support_.held[i] == 0)
+        for (int c = 0; c < 8; ++c)
+          residual_[i].component[c] += length * image_[i].component[c];
+      else
+        for (int d = 0; d < 6; ++d)
+          if (!(support_.held[i] >> d & 1))
+            residual_[i][d] += length * image_[i][d];
+      pass_residual(hierarchy, i, scale);
+      return squared(residual_[i]);
     }));
   }
 
@@ -453,7 +447,7 @@ private:
     }
     report_.operator_complexity = links / moved(sizes[0]);
     report_.bytes += (residual_.size() + image_.size() + direction_.size()) * sizeof(residual_[0]) +
-                     hierarchy.order().size() * sizeof(std::uint32_t) + support_.held.size();
+                     hierarchy.place().size() * sizeof(std::uint32_t) + support_.held.size();
   }
 
   const Parameters& parameters_;
@@ -465,7 +459,8 @@ private:
   detail::Units units_;
   detail::Support support_;
   particles::SpatialField<> residual_, direction_,
-      image_; ///< [particles]; image: internal forces of the direction
+      image_;          ///< [particles]; image: internal forces of the direction
+  double pending_ = 0; ///< step along the direction that the displacement has still to take
   double applications_ = 0;
   bool has_free_channels_ = false; ///< some bond resists stretch, shear, twist and bend not all
 };

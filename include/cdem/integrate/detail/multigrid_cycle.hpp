@@ -6,6 +6,8 @@
 
 #include <cdem/integrate/detail/multigrid_hierarchy.hpp>
 
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace cdem::integrate::detail {
@@ -21,81 +23,85 @@ inline Twist free_part(Twist x, HeldMask held) {
   return x;
 }
 
-/// Coefficients of step k = 0, 1, ... of Chebyshev's iteration of the fourth kind, which damps what lies below the
-/// largest eigenvalue without having to know the smallest:
-///     d_k = momentum d_{k-1} + gain D^-1 (b - K x_k),   x_{k+1} = x_k + d_k
-/// Lottes, Optimal polynomial smoothers for multigrid V-cycles, Numer. Linear Algebra Appl. 30 (2023) e2518, alg. 3.
-struct ChebyshevStep {
-  float momentum;
-  float gain;
-  /// D^-1 K of links, D its 6x6 diagonal blocks, has no eigenvalue above 2: |a - b|^2 <= 2 |a|^2 + 2 |b|^2 in the
-  /// energy of each link.
-  static constexpr float largest_eigenvalue = 2;
-
-  explicit ChebyshevStep(int k)
-      : momentum(k == 0 ? 0.0F : static_cast<float>(2 * k - 1) / static_cast<float>(2 * k + 3)),
-        gain(static_cast<float>(8 * k + 4) / static_cast<float>(2 * k + 3) / largest_eigenvalue) {}
-};
-
-/// x = smoothing of zero: the first Chebyshev step.
-template <class Link>
-void start_smoothing(Level<Link>& level, core::ThreadPool& pool) {
-  const ChebyshevStep step(0);
-  core::parallel_for(pool, level.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t node = begin; node < end; ++node) {
-      const Twist rhs = Twist::load(level.rhs[node].component);
-      const Twist moved = multiply(level.inverse_diagonal.data() + 36 * node, rhs.linear, rhs.angular);
-      (step.gain * moved).clean().store(level.x[node].component);
-      Twist{}.store(level.previous[node].component);
-    }
-  });
+/// Gain of step j = 0, ..., steps - 1 of the smoother x := x + gain D^-1 (b - K x).
+///
+/// The steps multiply an error of eigenvalue s (of D^-1 K, in units of its largest) by the polynomial p of that degree
+/// with p(0) = 1 that makes the V-cycle's bound sup s p^2 / (1 - p^2) least; the gains are the inverses of its roots. It is
+/// p(s) = +-T_2n+1(y) / sqrt(1 + c s) with y^2 = (1 + c s) / (1 + c), 1 / sqrt(1 + c) = cos(n pi / (2n + 1)): T is odd,
+/// and one where p is to be one.
+/// Lottes, Optimal polynomial smoothers for multigrid V-cycles, Numer. Linear Algebra Appl. 30 (2023) e2518, gives it as a
+/// weighted Chebyshev iteration of the fourth kind.
+inline float smoothing_gain(int j, int steps) {
+  // D^-1 K of links, D its 6x6 diagonal blocks, has no eigenvalue above 2: |a - b|^2 <= 2 |a|^2 + 2 |b|^2 in the
+  // energy of each link.
+  constexpr double largest_eigenvalue = 2;
+  const double end = std::cos(steps * std::numbers::pi / (2 * steps + 1));
+  const double y = std::cos((2 * j + 1) * std::numbers::pi / (4 * steps + 2));
+  const double root = (y * y - end * end) / (1 - end * end);
+  return static_cast<float>(1 / (root * largest_eigenvalue));
 }
 
-/// One Chebyshev step on x.
-template <class Link>
-void smooth(Level<Link>& level, int k, core::ThreadPool& pool) {
-  const ChebyshevStep step(k);
-  level.network.for_each_block(level.x, pool, [&](std::size_t, NodeIndex begin, NodeIndex end, auto&& force) {
-    for (NodeIndex node = begin; node < end; ++node) {
-      Twist residual = Twist::load(level.rhs[node].component);
-      residual += force(node);
-      const Twist moved =
-          multiply(level.inverse_diagonal.data() + 36 * std::size_t{node}, residual.linear, residual.angular);
-      const Twist x = Twist::load(level.x[node].component);
-      Twist last = x;
-      last -= Twist::load(level.previous[node].component);
-      Twist next = x;
-      next += step.momentum * last;
-      next += step.gain * moved;
-      next.clean().store(level.previous[node].component);
-    }
+/// A block's lines of the level's fields, for relax().
+template <class Links>
+RelaxedBlock relaxed_block(Level<Links>& level, std::size_t block, float gain) {
+  const NodeIndex begin = level.network.block_begin[block];
+  return {.inverse = level.inverse_diagonal.data() + level.inverse_begin[block],
+          .rhs = level.rhs[begin].component,
+          .force = nullptr,
+          .x = level.x[begin].component,
+          .result = level.next[begin].component,
+          .count = level.network.block_begin[block + 1] - begin,
+          .gain = gain};
+}
+
+/// x = first step from zero.
+template <class Links>
+void start_smoothing(Level<Links>& level, int steps, core::ThreadPool& pool) {
+  const float gain = smoothing_gain(0, steps);
+  pool.for_each_block(level.network.blocks(), [&](std::size_t block) {
+    const RelaxedBlock relaxed = relaxed_block(level, block, gain);
+    with_loops([&](auto loops) { loops.relax_zero(relaxed); });
   });
-  std::swap(level.x, level.previous);
+  std::swap(level.x, level.next);
+}
+
+/// Step j on x.
+template <class Links>
+void smooth(Level<Links>& level, int j, int steps, core::ThreadPool& pool) {
+  const float gain = smoothing_gain(j, steps);
+  level.network.for_each_block(level.x, pool,
+                               [&](std::size_t block, NodeIndex, NodeIndex, const Field& force) {
+                                 RelaxedBlock relaxed = relaxed_block(level, block, gain);
+                                 relaxed.force = lines(force);
+                                 with_loops([&](auto loops) { loops.relax(relaxed); });
+                               });
+  std::swap(level.x, level.next);
 }
 
 /// Forces and moments of the residual b - K x on each group, about its centre.
-template <class Link>
-void restrict_residual(const Level<Link>& level, Field& group_rhs, core::ThreadPool& pool) {
-  level.network.for_each_block(level.x, pool, [&](std::size_t block, NodeIndex, NodeIndex, auto&& force) {
-    for (NodeIndex group = level.block_group[block]; group < level.block_group[block + 1]; ++group) {
-      Twist sum;
-      for (NodeIndex node = level.group_begin[group]; node < level.group_begin[group + 1]; ++node) {
-        Twist residual = Twist::load(level.rhs[node].component);
-        residual += force(node);
-        if (!level.held.empty() && level.held[node] != 0)
-          residual = free_part(residual, level.held[node]);
-        const Float4 arm = load4(level.arm.data() + 4 * std::size_t{node});
-        residual.angular += cross(arm, residual.linear);
-        sum += residual;
-      }
-      sum.clean().store(group_rhs[group].component);
-    }
-  });
+template <class Links>
+void restrict_residual(const Level<Links>& level, Field& group_rhs, core::ThreadPool& pool) {
+  level.network.for_each_block(
+      level.x, pool, [&](std::size_t block, NodeIndex begin, NodeIndex, const Field& force) {
+        for (NodeIndex group = level.block_group[block]; group < level.block_group[block + 1]; ++group) {
+          Twist sum;
+          for (NodeIndex node = level.group_begin[group]; node < level.group_begin[group + 1]; ++node) {
+            Twist residual = Twist::load(level.rhs[node].component);
+            residual += Twist::load(force[node - begin].component);
+            if (!level.held.empty() && level.held[node] != 0)
+              residual = free_part(residual, level.held[node]);
+            const Float4 arm = load4(level.arm.data() + 4 * std::size_t{node});
+            residual.angular += cross(arm, residual.linear);
+            sum += residual;
+          }
+          sum.clean().store(group_rhs[group].component);
+        }
+      });
 }
 
 /// x += rigid motion of each node's group.
-template <class Link>
-void add_group_motion(Level<Link>& level, const Field& group_x, core::ThreadPool& pool) {
+template <class Links>
+void add_group_motion(Level<Links>& level, const Field& group_x, core::ThreadPool& pool) {
   pool.for_each_block(level.network.blocks(), [&](std::size_t block) {
     for (NodeIndex group = level.block_group[block]; group < level.block_group[block + 1]; ++group) {
       const Twist motion = Twist::load(group_x[group].component);
@@ -114,7 +120,7 @@ void add_group_motion(Level<Link>& level, const Field& group_x, core::ThreadPool
 /// What the cycle may be told.
 struct CycleParameters {
   int smoothing_steps = 3;       ///< Chebyshev steps before and after the coarse correction
-  int group_smoothing_steps = 2; ///< the same on the levels of groups
+  int group_smoothing_steps = 1; ///< the same on the levels of groups
   double inner_tolerance =
       0.25; ///< an inner iteration that cut the residual so far is not followed by a second
 };
@@ -130,6 +136,7 @@ public:
     std::uint32_t group_size = 20;    ///< particles or groups to a group
     std::uint32_t coarsest_size = 60; ///< groups that the sparse factor takes
     double weakest_tie = 0.05;        ///< see GroupGrower
+    std::uint32_t hanging = 3;        ///< see GroupGrower
     double held_stiffness = 1;        ///< see group_graph()
     double shift = 1e-12;             ///< see CoarsestSolver
     CycleParameters cycle = {};
@@ -139,11 +146,12 @@ public:
   Hierarchy(const BondGraph<Forces>& bonds, const Parameters& parameters, core::ThreadPool& pool)
       : parameters_(parameters.cycle) {
     std::vector<Groups> groups; // of the particles, of their groups, ...
-    groups.push_back(GroupGrower(bonds, parameters.group_size, parameters.weakest_tie).grow());
+    groups.push_back(
+        grow_groups(bonds, parameters.group_size, parameters.weakest_tie, parameters.hanging, pool));
     std::vector<GroupGraph> graphs;
     graphs.push_back(group_graph(bonds, groups[0], parameters.held_stiffness, pool));
     while (graphs.back().size() > parameters.coarsest_size) {
-      Groups next = GroupGrower(graphs.back(), parameters.group_size, parameters.weakest_tie).grow();
+      Groups next = grow_groups(graphs.back(), parameters.group_size, parameters.weakest_tie, 0, pool);
       if (next.count > 0.9 * graphs.back().size())
         break; // nothing left to join: many bodies, each of one group
       groups.push_back(std::move(next));
@@ -162,19 +170,20 @@ public:
       position = positions_in(order, graphs[k].size(), none);
       graphs.pop_back();
     }
-    order_ = order_by_group(groups[0], position);
-    particles_ = make_level(bonds, &groups[0], order_, nodes_per_block, pool);
-    particles_.held.resize(order_.size());
-    for (std::size_t k = 0; k < order_.size(); ++k)
-      particles_.held[k] = bonds.held(order_[k]);
+    const std::vector<std::uint32_t> order = order_by_group(groups[0], position);
+    particles_ = make_level(bonds, &groups[0], order, nodes_per_block, pool);
+    particles_.held.resize(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k)
+      particles_.held[k] = bonds.held(order[k]);
+    place_ = positions_in(order, bonds.size(), none);
     const std::size_t coarsest_nodes =
         levels_.empty() ? particles_.group_begin.size() - 1 : levels_.back().level.group_begin.size() - 1;
     coarsest_rhs_.resize(coarsest_nodes);
     coarsest_x_.resize(coarsest_nodes);
   }
 
-  /// Particle at each place of the fields.
-  const std::vector<std::uint32_t>& order() const { return order_; }
+  /// [particles] place of each in the fields; none for those held altogether.
+  const std::vector<std::uint32_t>& place() const { return place_; }
   /// Right-hand side, to be filled; changed by nobody.
   Field& rhs() { return particles_.rhs; }
   /// What precondition() made of it.
@@ -184,7 +193,7 @@ public:
   void precondition(core::ThreadPool& pool) { cycle(particles_, 0, pool); }
 
   std::size_t level_count() const { return levels_.size() + 2; }
-  const Level<BondLink>& particle_level() const { return particles_; }
+  const Level<BondLinks>& particle_level() const { return particles_; }
   struct Size {
     std::size_t nodes, links, bytes;
     double applications;
@@ -192,9 +201,9 @@ public:
   /// Nodes, links, memory and operator applications so far of each level, the coarsest last.
   std::vector<Size> sizes() const {
     std::vector<Size> all{
-        {particles_.size(), particles_.network.link.size(), particles_.bytes(), applications_}};
+        {particles_.size(), particles_.network.links.size() * 8, particles_.bytes(), applications_}};
     for (const auto& group_level : levels_)
-      all.push_back({group_level.level.size(), group_level.level.network.link.size(),
+      all.push_back({group_level.level.size(), group_level.level.network.links.size() * 8,
                      group_level.level.bytes() + 3 * group_level.search.size() * sizeof(Field::value_type),
                      group_level.applications});
     all.push_back({coarsest_x_.size(), coarsest_.entries(), coarsest_.entries() * 12, 0});
@@ -206,7 +215,7 @@ private:
   static constexpr NodeIndex nodes_per_coarse_block = 512;
 
   struct GroupLevel {
-    Level<GroupLink> level;
+    Level<GroupLinks> level;
     Field search, image, image2; ///< of the inner conjugate gradients
     double applications = 0;
     void allocate() {
@@ -215,12 +224,12 @@ private:
     }
   };
 
-  template <class Link>
-  void cycle(Level<Link>& level, std::size_t coarse, core::ThreadPool& pool) {
+  template <class Links>
+  void cycle(Level<Links>& level, std::size_t coarse, core::ThreadPool& pool) {
     const int steps = coarse == 0 ? parameters_.smoothing_steps : parameters_.group_smoothing_steps;
-    start_smoothing(level, pool);
-    for (int k = 1; k < steps; ++k)
-      smooth(level, k, pool);
+    start_smoothing(level, steps, pool);
+    for (int j = 1; j < steps; ++j)
+      smooth(level, j, steps, pool);
     const bool last = coarse == levels_.size();
     restrict_residual(level, last ? coarsest_rhs_ : levels_[coarse].level.rhs, pool);
     if (last)
@@ -228,15 +237,15 @@ private:
     else
       solve(coarse, pool);
     add_group_motion(level, last ? coarsest_x_ : levels_[coarse].level.x, pool);
-    for (int k = 0; k < steps; ++k)
-      smooth(level, k, pool);
+    for (int j = steps; j-- > 0;)
+      smooth(level, j, steps, pool);
     (coarse == 0 ? applications_ : levels_[coarse - 1].applications) += 2 * steps;
   }
 
   /// x = approximate solution of K x = rhs on a level of groups, by up to two iterations; overwrites rhs.
   void solve(std::size_t index, core::ThreadPool& pool) {
     GroupLevel& group_level = levels_[index];
-    Level<GroupLink>& level = group_level.level;
+    Level<GroupLinks>& level = group_level.level;
     const double start = inner(level.rhs, level.rhs, pool);
     cycle(level, index + 1, pool);
     apply(group_level, level.x, group_level.image, pool);
@@ -262,11 +271,11 @@ private:
   }
 
   static void apply(GroupLevel& group_level, const Field& x, Field& image, core::ThreadPool& pool) {
-    group_level.level.network.for_each_block(x, pool,
-                                             [&](std::size_t, NodeIndex begin, NodeIndex end, auto&& force) {
-                                               for (NodeIndex node = begin; node < end; ++node)
-                                                 (-1.0F * force(node)).clean().store(image[node].component);
-                                             });
+    group_level.level.network.for_each_block(
+        x, pool, [&](std::size_t, NodeIndex begin, NodeIndex end, const Field& force) {
+          for (NodeIndex node = begin; node < end; ++node)
+            (-1.0F * Twist::load(force[node - begin].component)).store(image[node].component);
+        });
     group_level.applications += 1;
   }
 
@@ -294,8 +303,8 @@ private:
   }
 
   CycleParameters parameters_;
-  Level<BondLink> particles_;
-  std::vector<std::uint32_t> order_; ///< [nodes of the first level] their particles
+  Level<BondLinks> particles_;
+  std::vector<std::uint32_t> place_; ///< [particles] their nodes on the first level
   std::vector<GroupLevel> levels_;   ///< of groups, without the coarsest
   CoarsestSolver coarsest_;
   Field coarsest_rhs_, coarsest_x_;

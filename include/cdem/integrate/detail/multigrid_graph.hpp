@@ -3,10 +3,9 @@
 /// @file
 /// The networks from which the static multigrid is set up: the body's bonds, and the links between groups.
 
-#include <cdem/integrate/detail/multigrid_groups.hpp>
+#include <cdem/integrate/detail/multigrid_bonds.hpp>
 #include <cdem/integrate/detail/multigrid_operator.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
@@ -14,83 +13,55 @@
 
 namespace cdem::integrate::detail {
 
-/// Units in which a body's numbers are near one: single precision needs them, and they make translations and
-/// rotations comparable.
-struct Units {
-  double length = 1;    ///< m: mean length of the bonds
-  double stiffness = 1; ///< N/m: mean normal stiffness of the bonds
-};
-
-/// Which degrees of freedom of a particle are held: bit d for degree of freedom d.
-using HeldMask = std::uint8_t;
-inline constexpr HeldMask all_held = 0x3F;
-
-/// The bonds of a body, in the multigrid's units.
+/// The network of a body's particles.
 template <LinearBonds Forces>
 class BondGraph {
 public:
-  using Link = BondLink;
+  using Links = BondLinks;
+  using Link = typename Bonds<Forces>::Number;
 
-  BondGraph(const Forces& forces, const std::vector<HeldMask>& held, Units units)
-      : forces_(forces), held_(held), units_(units) {}
+  BondGraph(const Bonds<Forces>& bonds, const std::vector<HeldMask>& held) : bonds_(bonds), held_(held) {}
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(held_.size()); }
   bool is_held(std::uint32_t node) const { return held_[node] == all_held; }
   HeldMask held(std::uint32_t node) const { return held_[node]; }
-  double weight(BondIndex b) const {
-    const auto& stiffness = forces_.stiffness(b);
-    return (stiffness.normal + 2 * stiffness.tangential) / units_.stiffness;
-  }
+  double weight(Link link) const { return bonds_.weight(link); }
 
-  /// visit(bond, neighbour or none, branch): branch() goes from the node to the neighbour.
+  /// visit(link, neighbour or none, branch): branch() goes from the node to the neighbour.
   template <class Visit>
   void for_each_link(std::uint32_t node, Visit&& visit) const {
-    for (const BondIndex b : forces_.bonds_of(node)) {
-      const auto [first, second] = forces_.ends(b);
-      const bool outward = first == node;
-      const std::uint32_t neighbour = outward ? second : first;
-      visit(b, is_held(neighbour) ? none : neighbour, [this, b, outward]() -> Vec3 {
-        return ((outward ? 1 : -1) * forces_.length(b) / units_.length) * forces_.direction(b);
-      });
-    }
+    for (const auto end : bonds_.of(node))
+      visit(end.bond, is_held(end.neighbour) ? none : end.neighbour,
+            [this, node, end]() -> Vec3 { return bonds_.branch(node, end); });
   }
 
-  /// Stiffness of a link at its middle.
-  Matrix6 stiffness(BondIndex b) const {
-    const auto& k = forces_.stiffness(b);
-    const Vec3 n = forces_.direction(b);
-    const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
-    Matrix6 matrix = Matrix6::Zero();
-    matrix.topLeftCorner<3, 3>() = (k.normal * along + k.tangential * across) / units_.stiffness;
-    matrix.bottomRightCorner<3, 3>() = (k.torsion * along + k.bending * across) / moment_stiffness();
-    return matrix;
-  }
-
-  Link packed(BondIndex b, const Vec3& branch) const {
-    const auto& k = forces_.stiffness(b);
-    const Eigen::Vector3f n = branch.normalized().template cast<float>();
-    return {{n.x(), n.y(), n.z(), static_cast<float>(0.5 * branch.norm())},
-            static_cast<float>(k.tangential / units_.stiffness),
-            static_cast<float>((k.normal - k.tangential) / units_.stiffness),
-            static_cast<float>(k.bending / moment_stiffness()),
-            static_cast<float>((k.torsion - k.bending) / moment_stiffness())};
+  BondStiffness stiffness(Link link) const { return bonds_.stiffness(link); }
+  Mat3 slip_stiffness(Link link) const { return bonds_.stiffness(link).slip; }
+  void pack(Link link, const Vec3& branch, Links& links, std::size_t lane) const {
+    bonds_.pack(link, branch, links, lane);
   }
 
   /// Stiffness that ties a node to the ground, besides its links: none.
   const Matrix6* ground(std::uint32_t) const { return nullptr; }
 
 private:
-  double moment_stiffness() const { return units_.stiffness * units_.length * units_.length; }
-
-  const Forces& forces_;
+  const Bonds<Forces>& bonds_;
   const std::vector<HeldMask>& held_;
-  Units units_;
 };
+
+/// Stores a symmetric matrix in one lane, see multiply_symmetric().
+inline void pack_symmetric(const Matrix6& matrix, float* upper, std::size_t lane) {
+  for (int row = 0; row < 6; ++row)
+    for (int column = row; column < 6; ++column)
+      upper[8 * static_cast<std::size_t>(upper_entry(row, column)) + lane] =
+          static_cast<float>(matrix(row, column));
+}
 
 /// The links between groups, each once, by first group.
 class GroupGraph {
 public:
-  using Link = GroupLink;
+  using Links = GroupLinks;
+  using Link = std::uint32_t;
   struct Edge {
     std::uint32_t first, second;
     Vec3 branch;       ///< from the centre of `first` to that of `second`
@@ -131,11 +102,12 @@ public:
 
   const Matrix6& stiffness(std::uint32_t e) const { return edges_[e].stiffness; }
 
-  Link packed(std::uint32_t e, const Vec3& branch) const {
-    Link link;
-    Eigen::Map<Eigen::Matrix<float, 6, 6>>(link.data.data()) = edges_[e].stiffness.cast<float>();
-    Eigen::Map<Eigen::Vector3f>(link.data.data() + 36) = (0.5 * branch).cast<float>();
-    return link;
+  Mat3 slip_stiffness(std::uint32_t e) const { return edges_[e].stiffness.topLeftCorner<3, 3>(); }
+
+  void pack(std::uint32_t e, const Vec3& branch, Links& links, std::size_t lane) const {
+    for (int d = 0; d < 3; ++d)
+      links.half_branch[d][lane] = static_cast<float>(0.5 * branch[d]);
+    pack_symmetric(edges_[e].stiffness, links.upper.data(), lane);
   }
 
   const Matrix6* ground(std::uint32_t node) const {
@@ -159,7 +131,7 @@ Matrix6 diagonal_stiffness(const Graph& graph, std::uint32_t node) {
   if (const Matrix6* ground = graph.ground(node))
     sum += *ground;
   graph.for_each_link(node, [&](auto link, std::uint32_t, const auto& branch) {
-    sum += carried(graph.stiffness(link), 0.5 * branch());
+    add_carried(sum, graph.stiffness(link), 0.5 * branch());
   });
   return sum;
 }
@@ -171,6 +143,39 @@ inline std::pair<double, double> mean_stiffness(const Matrix6& stiffness) {
 
 /// A stiffness below this part of a node's largest is rounding: the motion meets none.
 inline constexpr double negligible = 1e-14;
+
+/// Inverse of a positive definite matrix by Cholesky's factor; false if that meets a pivot below 1e-10.
+inline bool invert_positive(const Matrix6& matrix, Matrix6& inverse) {
+  double factor[6][6], inverted[6][6]; // L and its inverse, lower triangles
+  for (int j = 0; j < 6; ++j) {
+    for (int i = j; i < 6; ++i) {
+      double sum = matrix(i, j);
+      for (int k = 0; k < j; ++k)
+        sum -= factor[i][k] * factor[j][k];
+      if (i > j) {
+        factor[i][j] = sum * inverted[j][j];
+      } else {
+        if (!(sum > 1e-10))
+          return false;
+        inverted[j][j] = 1 / std::sqrt(sum);
+      }
+    }
+    for (int c = 0; c < j; ++c) {
+      double sum = 0;
+      for (int k = c; k < j; ++k)
+        sum -= factor[j][k] * inverted[k][c];
+      inverted[j][c] = sum * inverted[j][j];
+    }
+  }
+  for (int j = 0; j < 6; ++j)
+    for (int i = j; i < 6; ++i) {
+      double sum = 0;
+      for (int k = i; k < 6; ++k)
+        sum += inverted[k][i] * inverted[k][j];
+      inverse(i, j) = inverse(j, i) = sum;
+    }
+  return true;
+}
 
 /// Inverse of a node's stiffness over its free degrees of freedom; zero over the held ones, and over motions that
 /// meet no stiffness: least such motion, with rotations and translations each measured by their mean stiffness.
@@ -186,11 +191,8 @@ inline Matrix6 inverse_of(Matrix6 stiffness, HeldMask held) {
   Vector6 scale;
   scale << Vec3::Constant(scale_of(translation)), Vec3::Constant(scale_of(rotation));
   const Matrix6 scaled = scale.asDiagonal() * stiffness * scale.asDiagonal();
-  const Eigen::LLT<Matrix6> factor(scaled);
   Matrix6 inverse;
-  if (factor.info() == Eigen::Success && factor.matrixLLT().diagonal().minCoeff() > 1e-5) {
-    inverse = factor.solve(Matrix6::Identity());
-  } else {
+  if (!invert_positive(scaled, inverse)) {
     const Eigen::SelfAdjointEigenSolver<Matrix6> modes(scaled);
     const Vector6 inverted = modes.eigenvalues().unaryExpr([](double k) { return k > 1e-10 ? 1 / k : 0; });
     inverse = modes.eigenvectors() * inverted.asDiagonal() * modes.eigenvectors().transpose();
@@ -240,7 +242,7 @@ GroupGraph group_graph(const Graph& graph, const Groups& groups, double held_sti
         const std::uint32_t node = members[m];
         const Vec3& arm = groups.arm[node];
         if (const Matrix6* own = graph.ground(node)) {
-          ground += carried(*own, arm);
+          add_carried(ground, *own, arm);
           grounded = true;
         }
         if (graph.held(node) != 0) {
@@ -249,12 +251,12 @@ GroupGraph group_graph(const Graph& graph, const Groups& groups, double held_sti
           for (int d = 0; d < 6; ++d)
             if (graph.held(node) >> d & 1)
               springs(d, d) = held_stiffness * diagonal[d];
-          ground += carried(springs, arm);
+          add_carried(ground, springs, arm);
           grounded = true;
         }
         graph.for_each_link(node, [&](auto link, std::uint32_t neighbour, const auto& branch) {
           if (neighbour == none) {
-            ground += carried(graph.stiffness(link), arm + 0.5 * branch());
+            add_carried(ground, graph.stiffness(link), arm + 0.5 * branch());
             grounded = true;
             return;
           }
@@ -266,9 +268,8 @@ GroupGraph group_graph(const Graph& graph, const Groups& groups, double held_sti
           if (other == group) { // not strained, unless it closes on the group through a periodic face
             if (between.squaredNorm() > 1e-6 * way.squaredNorm()) {
               const Mat3 lever = cross_matrix(between);
-              ground.bottomRightCorner<3, 3>() += 0.5 * lever.transpose() *
-                                                  graph.stiffness(link).template topLeftCorner<3, 3>() *
-                                                  lever; // met twice
+              ground.bottomRightCorner<3, 3>() +=
+                  0.5 * lever.transpose() * graph.slip_stiffness(link) * lever; // met twice
               grounded = true;
             }
             return;
@@ -280,7 +281,7 @@ GroupGraph group_graph(const Graph& graph, const Groups& groups, double held_sti
             ++place;
           if (place == part.edges.end())
             place = part.edges.insert(place, {group, other, between, Matrix6::Zero()});
-          place->stiffness += carried(graph.stiffness(link), arm + 0.5 * (way - place->branch));
+          add_carried(place->stiffness, graph.stiffness(link), arm + 0.5 * (way - place->branch));
         });
       }
       if (grounded)

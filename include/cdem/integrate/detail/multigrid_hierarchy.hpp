@@ -17,20 +17,21 @@ namespace cdem::integrate::detail {
 /// One level: its operator, the smoother's inverse diagonal, and the groups that make the next level's nodes.
 template <class LinkType>
 struct Level {
-  using Link = LinkType;
-  LinkedNodes<Link> network;
-  std::vector<float> inverse_diagonal; ///< [nodes x 36 + 1] of each node's 6x6 block
-  std::vector<HeldMask> held;          ///< [nodes] on the level of the particles, else empty
-  std::vector<NodeIndex> group_begin;  ///< [groups + 1] first node of each group; empty on the coarsest level
-  std::vector<float> arm;              ///< [nodes x 4] from the group's centre, last of each zero
-  std::vector<NodeIndex> block_group;  ///< [blocks + 1] first group of each block of the network
+  using Links = LinkType;
+  LinkedNodes<Links> network;
+  LevelArray<float> inverse_diagonal;     ///< [eights of nodes x 21 x 8], see multiply_symmetric()
+  std::vector<std::size_t> inverse_begin; ///< [blocks] where each block's begins
+  std::vector<HeldMask> held;             ///< [nodes] on the level of the particles, else empty
+  std::vector<NodeIndex> group_begin; ///< [groups + 1] first node of each group; empty on the coarsest level
+  LevelArray<float> arm;              ///< [nodes x 4] from the group's centre, last of each zero
+  std::vector<NodeIndex> block_group; ///< [blocks + 1] first group of each block of the network
 
-  Field rhs, x, previous; ///< [nodes + 1], the last one the ground
+  Field rhs, x, next; ///< [nodes + spare_lines], the first spare one the ground
   NodeIndex size() const { return network.size(); }
 
   void allocate_fields() {
-    for (Field* field : {&rhs, &x, &previous})
-      field->assign(size() + std::size_t{1}, {});
+    for (Field* field : {&rhs, &x, &next})
+      field->assign(size() + spare_lines, {});
   }
   std::size_t bytes() const {
     return network.bytes() + inverse_diagonal.size() * sizeof(float) + held.size() +
@@ -67,8 +68,8 @@ inline std::vector<std::uint32_t> positions_in(const std::vector<std::uint32_t>&
 }
 
 /// Bounds of blocks of about `nodes_per_block` nodes made of whole groups, and the groups' own bounds.
-template <class Link>
-void cut_into_blocks(Level<Link>& level, const Groups* groups, const std::vector<std::uint32_t>& order,
+template <class Links>
+void cut_into_blocks(Level<Links>& level, const Groups* groups, const std::vector<std::uint32_t>& order,
                      NodeIndex nodes_per_block) {
   const auto nodes = static_cast<NodeIndex>(order.size());
   auto& bounds = level.network.block_begin;
@@ -91,58 +92,95 @@ void cut_into_blocks(Level<Link>& level, const Groups* groups, const std::vector
   }
 }
 
-/// Writes the level's operator, inverse diagonal and arms from its graph.
-///
-/// @param groups  of the level's nodes; null on the coarsest level
-/// @param order   [nodes] old number of each node
+/// Links of one block before they are packed: a row holds those that leave the block and, of those that stay, the ones
+/// to a later node.
 template <class Graph>
-Level<typename Graph::Link> make_level(const Graph& graph, const Groups* groups,
-                                       const std::vector<std::uint32_t>& order, NodeIndex nodes_per_block,
-                                       core::ThreadPool& pool) {
-  Level<typename Graph::Link> level;
-  cut_into_blocks(level, groups, order, nodes_per_block);
-  auto& network = level.network;
+struct BlockLinks {
+  struct Entry {
+    NodeIndex row, other; ///< numbers in the level
+    typename Graph::Link link;
+    Vec3 branch;
+  };
+  std::vector<Entry> inner, leaving;
+
+  void gather(const Graph& graph, const std::vector<std::uint32_t>& order,
+              const std::vector<std::uint32_t>& position, NodeIndex begin, NodeIndex end) {
+    inner.clear();
+    leaving.clear();
+    for (NodeIndex row = begin; row < end; ++row)
+      graph.for_each_link(order[row], [&](auto link, std::uint32_t neighbour, const auto& branch) {
+        const NodeIndex other =
+            neighbour == none ? static_cast<NodeIndex>(order.size()) : position[neighbour];
+        if (other < begin || other >= end)
+          leaving.push_back({row, other, link, branch()});
+        else if (other > row)
+          inner.push_back({row, other, link, branch()});
+      });
+  }
+
+  static std::size_t eights(std::size_t links) { return (links + 7) / 8; }
+
+  /// Packs links into eights. Links that follow each other mostly share their first end: over spans of eight eights they
+  /// are dealt out so that the lanes of an eight do not wait for one another's sums.
+  static void pack(const Graph& graph, const std::vector<Entry>& entries, NodeIndex first_base,
+                   NodeIndex second_base, NodeIndex sink, NodeIndex resting, typename Graph::Links* eight) {
+    for (std::size_t span = 0; span < entries.size(); span += 64) {
+      const std::size_t count = std::min<std::size_t>(64, entries.size() - span), full = eights(count);
+      for (std::size_t k = 0; k < full; ++k, ++eight) {
+        *eight = {};
+        for (std::size_t lane = 0; lane < 8; ++lane)
+          if (const std::size_t place = lane * full + k; place < count) {
+            const Entry& entry = entries[span + place];
+            eight->first[lane] = entry.row - first_base;
+            eight->second[lane] = entry.other - second_base;
+            graph.pack(entry.link, entry.branch, *eight, lane);
+          } else {
+            eight->first[lane] = sink;
+            eight->second[lane] = resting;
+          }
+      }
+    }
+  }
+};
+
+/// Writes the level's links from its graph.
+template <class Graph>
+void write_links(LinkedNodes<typename Graph::Links>& network, const Graph& graph,
+                 const std::vector<std::uint32_t>& order, core::ThreadPool& pool) {
   const auto nodes = static_cast<NodeIndex>(order.size());
   const std::vector<std::uint32_t> position = positions_in(order, graph.size(), nodes);
-
-  // A row holds the links that leave its block and, of those that stay, the ones to a later node.
-  const auto for_each_row_link = [&](std::size_t block, NodeIndex row, auto&& visit) {
+  const std::size_t blocks = network.blocks();
+  network.links_begin.assign(blocks + 1, 0);
+  network.leaving.assign(blocks, 0);
+  pool.for_each_block(blocks, [&](std::size_t block) {
     const NodeIndex begin = network.block_begin[block], end = network.block_begin[block + 1];
-    graph.for_each_link(order[row], [&](auto link, std::uint32_t neighbour, const auto& branch) {
-      const NodeIndex other = neighbour == none ? nodes : position[neighbour];
-      if (other > row || other < begin || other >= end)
-        visit(link, other, branch);
-    });
-  };
-  network.row_begin.assign(nodes + std::size_t{1}, 0);
-  pool.for_each_block(network.blocks(), [&](std::size_t block) {
-    for (NodeIndex row = network.block_begin[block]; row < network.block_begin[block + 1]; ++row)
-      for_each_row_link(block, row, [&](auto, NodeIndex, const auto&) { ++network.row_begin[row + 1]; });
-  });
-  for (NodeIndex row = 0; row < nodes; ++row)
-    network.row_begin[row + 1] += network.row_begin[row];
-  network.other.resize(network.row_begin.back());
-  network.link.resize(network.row_begin.back());
-  level.inverse_diagonal.resize(nodes * std::size_t{36} + 1);
-  if (groups)
-    level.arm.resize(nodes * std::size_t{4});
-  pool.for_each_block(network.blocks(), [&](std::size_t block) {
-    for (NodeIndex row = network.block_begin[block]; row < network.block_begin[block + 1]; ++row) {
-      std::uint64_t place = network.row_begin[row];
-      for_each_row_link(block, row, [&](auto link, NodeIndex other, const auto& branch) {
-        network.other[place] = other;
-        network.link[place++] = graph.packed(link, branch());
+    std::size_t inner = 0, leaving = 0;
+    for (NodeIndex row = begin; row < end; ++row)
+      graph.for_each_link(order[row], [&](auto, std::uint32_t neighbour, const auto&) {
+        const NodeIndex other = neighbour == none ? nodes : position[neighbour];
+        (other < begin || other >= end ? leaving : inner) += 1;
       });
-      Eigen::Map<Eigen::Matrix<float, 6, 6>>(level.inverse_diagonal.data() + row * std::size_t{36}) =
-          inverse_of(diagonal_stiffness(graph, order[row]), graph.held(order[row])).template cast<float>();
-      if (groups)
-        Eigen::Map<Eigen::Vector3f>(level.arm.data() + row * std::size_t{4}) =
-            groups->arm[order[row]].template cast<float>();
-    }
+    network.leaving[block] = BlockLinks<Graph>::eights(inner / 2); // met at both ends
+    network.links_begin[block + 1] = network.leaving[block] + BlockLinks<Graph>::eights(leaving);
+  });
+  for (std::size_t block = 0; block < blocks; ++block) {
+    network.leaving[block] += network.links_begin[block];
+    network.links_begin[block + 1] += network.links_begin[block];
+  }
+  network.links.resize(network.links_begin.back());
+  pool.for_each_block(blocks, [&](std::size_t block) {
+    const NodeIndex begin = network.block_begin[block], end = network.block_begin[block + 1];
+    BlockLinks<Graph> links;
+    links.gather(graph, order, position, begin, end);
+    const NodeIndex sink = end - begin;
+    BlockLinks<Graph>::pack(graph, links.inner, begin, begin, sink, sink,
+                            network.links.data() + network.links_begin[block]);
+    BlockLinks<Graph>::pack(graph, links.leaving, begin, 0, sink, nodes,
+                            network.links.data() + network.leaving[block]);
   });
 
   network.ground_begin.assign(1, 0);
-  for (std::size_t block = 0; block < network.blocks(); ++block) {
+  for (std::size_t block = 0; block < blocks; ++block) {
     for (NodeIndex row = network.block_begin[block]; row < network.block_begin[block + 1]; ++row)
       if (const Matrix6* stiffness = graph.ground(order[row])) {
         GroundSpring spring{row, {}};
@@ -151,6 +189,39 @@ Level<typename Graph::Link> make_level(const Graph& graph, const Groups* groups,
       }
     network.ground_begin.push_back(static_cast<std::uint32_t>(network.ground.size()));
   }
+}
+
+/// Writes the level's operator, inverse diagonal and arms from its graph.
+///
+/// @param groups  of the level's nodes; null on the coarsest level
+/// @param order   [nodes] old number of each node
+template <class Graph>
+Level<typename Graph::Links> make_level(const Graph& graph, const Groups* groups,
+                                        const std::vector<std::uint32_t>& order, NodeIndex nodes_per_block,
+                                        core::ThreadPool& pool) {
+  Level<typename Graph::Links> level;
+  cut_into_blocks(level, groups, order, nodes_per_block);
+  auto& network = level.network;
+  write_links(network, graph, order, pool);
+  std::size_t eights = 0;
+  for (std::size_t block = 0; block < network.blocks(); ++block) {
+    level.inverse_begin.push_back(168 * eights);
+    eights += (network.block_begin[block + 1] - network.block_begin[block] + std::size_t{7}) / 8;
+  }
+  level.inverse_diagonal.resize(168 * eights);
+  if (groups)
+    level.arm.resize(order.size() * 4);
+  pool.for_each_block(network.blocks(), [&](std::size_t block) {
+    const NodeIndex begin = network.block_begin[block];
+    for (NodeIndex row = begin; row < network.block_begin[block + 1]; ++row) {
+      const std::size_t place = row - begin;
+      pack_symmetric(inverse_of(diagonal_stiffness(graph, order[row]), graph.held(order[row])),
+                     level.inverse_diagonal.data() + level.inverse_begin[block] + place / 8 * 168, place % 8);
+      if (groups)
+        Eigen::Map<Eigen::Vector3f>(level.arm.data() + row * std::size_t{4}) =
+            groups->arm[order[row]].template cast<float>();
+    }
+  });
   level.allocate_fields();
   return level;
 }

@@ -1,14 +1,13 @@
 #pragma once
 
 /// @file
-/// The two kinds of link of the static multigrid: a bond between particles, and the sum of the bonds between two groups.
+/// What the static multigrid asks of a body's bonds, and the algebra of rigid motions.
 
 #include <cdem/core/types.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include <array>
 #include <concepts>
 #include <cstddef>
 #include <utility>
@@ -20,7 +19,7 @@ namespace cdem::integrate {
 /// The stiffnesses multiply the bond's stretch, shear, twist and bend: with n the direction and L the length,
 /// slip = u_j - u_i - L (th_i + th_j)/2 x n and turn = th_j - th_i.              [L17] section 2.2, frame-free form
 template <class F>
-concept LinearBonds = requires(const F& forces, BondIndex b, ParticleIndex i) {
+concept LinearBonds = requires(const F& forces, BondIndex b) {
   { forces.bond_count() } -> std::convertible_to<std::size_t>;
   { forces.ends(b) } -> std::convertible_to<std::pair<ParticleIndex, ParticleIndex>>;
   { forces.direction(b) } -> std::convertible_to<Vec3>;
@@ -29,13 +28,18 @@ concept LinearBonds = requires(const F& forces, BondIndex b, ParticleIndex i) {
   { forces.stiffness(b).tangential } -> std::convertible_to<double>;
   { forces.stiffness(b).torsion } -> std::convertible_to<double>;
   { forces.stiffness(b).bending } -> std::convertible_to<double>;
-  { *forces.bonds_of(i).begin() } -> std::convertible_to<BondIndex>;
 };
 
 namespace detail {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+/// Whether a bond resists anything.
+template <class Stiffness>
+bool is_stiff(const Stiffness& k) {
+  return k.normal > 0 || k.tangential > 0 || k.torsion > 0 || k.bending > 0;
+}
 
 /// [v]x, the matrix whose product with w is v x w.
 inline Mat3 cross_matrix(const Vec3& v) {
@@ -111,31 +115,6 @@ struct Twist {
   }
 };
 
-/// What a link's relative motion pulls: force and moment at its middle, on its first end.
-struct LinkPull {
-  Float4 force;
-  Float4 moment;
-};
-
-/// A bond between two particles, in single precision: 32 bytes.
-struct BondLink {
-  std::array<float, 4> direction_and_half_length; ///< n, L/2
-  float tangential;                               ///< K_t
-  float normal_excess;                            ///< K_n - K_t
-  float bending;                                  ///< E_mu I / L
-  float torsion_excess;                           ///< S_n - E_mu I / L
-
-  Float4 half_branch() const {
-    return direction_and_half_length[3] * load4(direction_and_half_length.data());
-  }
-  LinkPull pull(const Float4& slip, const Float4& turn) const {
-    const Float4 n = load4(direction_and_half_length.data());
-    return {tangential * slip + normal_excess * dot(slip, n) * n,
-            bending * turn + torsion_excess * dot(turn, n) * n};
-  }
-};
-static_assert(sizeof(BondLink) == 32);
-
 /// Product of a 6x6 matrix stored column by column, with one float after it that may be read, and a twist.
 inline Twist multiply(const float* columns, const Float4& linear, const Float4& angular) {
   Twist sum;
@@ -149,18 +128,6 @@ inline Twist multiply(const float* columns, const Float4& linear, const Float4& 
   }
   return sum;
 }
-
-/// All the bonds between two groups, as one link with a full stiffness at the middle of its branch: 160 bytes.
-struct GroupLink {
-  std::array<float, 40> data{}; ///< 36 of the symmetric stiffness, 3 of the half branch, 1 unused
-
-  Float4 half_branch() const { return load4(data.data() + 36); }
-  LinkPull pull(const Float4& slip, const Float4& turn) const {
-    const Twist product = multiply(data.data(), slip, turn);
-    return {product.linear, product.angular};
-  }
-};
-static_assert(sizeof(GroupLink) == 160);
 
 } // namespace detail
 } // namespace cdem::integrate

@@ -3,31 +3,28 @@
 /// @file
 /// Which parts of a body hang together, which of their rigid motions are free, and what is done about it.
 
-#include <cdem/integrate/detail/multigrid_graph.hpp>
+#include <cdem/integrate/detail/multigrid_bonds.hpp>
 #include <cdem/integrate/integrator.hpp>
 
-#include <array>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
 namespace cdem::integrate::detail {
 
-/// Whether a bond resists anything.
-template <class Stiffness>
-bool is_stiff(const Stiffness& k) {
-  return k.normal > 0 || k.tangential > 0 || k.torsion > 0 || k.bending > 0;
-}
-
-/// The connected parts of a body, and where their particles stand.
+/// The connected parts of a body, and where their particles stand, in units of length.
 ///
 /// Positions are found by following bonds, so that bonds through a periodic face need no special care; where a loop of
 /// bonds does not close, the part goes round a periodic cell and the mismatch tells how.
 struct Components {
   std::vector<std::uint32_t> of;    ///< [particles] number of the part, by first particle
-  std::vector<Vec3> position;       ///< [particles] from the part's centre, m
+  std::vector<Vec3> position;       ///< [particles] from the part's centre
   std::vector<std::uint32_t> size;  ///< [parts] particles
   std::vector<std::uint32_t> first; ///< [parts] first particle
-  std::vector<double> radius;       ///< [parts] radius of gyration, m; at least a bond's length
+  std::vector<double> radius;       ///< [parts] radius of gyration; at least 1, a bond's length
   std::vector<bool> periodic;       ///< [parts] goes round a periodic cell
   std::vector<Matrix6> held; ///< [parts] sum over what holds it of (row)'(row), rows of rigid motion about
                              ///< the centre, rotations times the radius
@@ -37,8 +34,8 @@ struct Components {
 
 /// @complexity O(bonds), serial
 template <LinearBonds Forces>
-Components find_components(const Forces& forces, double length_unit) {
-  const std::size_t particles = forces.particle_count();
+Components find_components(const Bonds<Forces>& bonds) {
+  const std::uint32_t particles = bonds.particles();
   Components parts;
   parts.of.assign(particles, none);
   parts.position.assign(particles, Vec3::Zero());
@@ -54,19 +51,14 @@ Components find_components(const Forces& forces, double length_unit) {
     for (std::size_t next = 0; next < queue.size(); ++next) {
       const std::uint32_t i = queue[next];
       centre += parts.position[i];
-      for (const BondIndex b : forces.bonds_of(i)) {
-        if (!is_stiff(forces.stiffness(b)))
-          continue;
-        const auto [from, to] = forces.ends(b);
-        const std::uint32_t j = from == i ? to : from;
-        const Vec3 there =
-            parts.position[i] + ((from == i ? 1 : -1) * forces.length(b)) * forces.direction(b);
+      for (const auto end : bonds.of(i)) {
+        const std::uint32_t j = end.neighbour;
+        const Vec3 there = parts.position[i] + bonds.exact_branch(i, end);
         if (parts.of[j] == none) {
           parts.of[j] = part;
           parts.position[j] = there;
           queue.push_back(j);
-        } else if (const Vec3 gap = there - parts.position[j];
-                   gap.squaredNorm() > 1e-4 * length_unit * length_unit) {
+        } else if (const Vec3 gap = there - parts.position[j]; gap.squaredNorm() > 1e-4) {
           const Mat3 turn = cross_matrix(gap);
           mismatch += turn.transpose() * turn; // a rotation opens the loop: it strains a bond
         }
@@ -78,7 +70,7 @@ Components find_components(const Forces& forces, double length_unit) {
       parts.position[i] -= centre;
       inertia += parts.position[i].squaredNorm();
     }
-    const double radius = std::max(length_unit, std::sqrt(inertia / static_cast<double>(queue.size())));
+    const double radius = std::max(1.0, std::sqrt(inertia / static_cast<double>(queue.size())));
     Matrix6 held = Matrix6::Zero();
     held.bottomRightCorner<3, 3>() = mismatch / (radius * radius);
     parts.size.push_back(static_cast<std::uint32_t>(queue.size()));
@@ -113,13 +105,16 @@ inline std::string name_motions(const Eigen::MatrixXd& motions) {
     if (motions.row(axis).squaredNorm() > 1 - 1e-6)
       add(std::string("translation along ") + "xyz"[axis]);
   // A rotation about an axis through some point: the free motions' rotations span the axis.
-  const Eigen::MatrixXd turns = motions.bottomRows(3);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> span(turns, Eigen::ComputeThinU);
+  const Eigen::SelfAdjointEigenSolver<Matrix6> span([&] {
+    Matrix6 products = Matrix6::Zero();
+    products.topLeftCorner<3, 3>() = motions.bottomRows(3) * motions.bottomRows(3).transpose();
+    return products;
+  }());
   for (int axis = 0; axis < 3; ++axis) {
     double part = 0;
-    for (Eigen::Index k = 0; k < span.singularValues().size(); ++k)
-      if (span.singularValues()[k] > 1e-4)
-        part += span.matrixU()(axis, k) * span.matrixU()(axis, k);
+    for (Eigen::Index k = 0; k < 6; ++k)
+      if (span.eigenvalues()[k] > 1e-8)
+        part += span.eigenvectors()(axis, k) * span.eigenvectors()(axis, k);
     if (part > 1 - 1e-6)
       add(std::string("rotation about ") + "xyz"[axis]);
   }
@@ -145,9 +140,9 @@ struct Support {
 /// The largest part is the body; it must be held, or be periodic and free to translate under balanced loads.
 /// @throws core::InvalidInput naming the body's free rigid motions, or the cluster on which a load does work
 template <LinearBonds Forces>
-Support find_support(const Problem<Forces>& problem, double length_unit) {
-  const std::size_t particles = problem.forces.particle_count();
-  Components parts = find_components(problem.forces, length_unit);
+Support find_support(const Problem<Forces>& problem, const Bonds<Forces>& bonds) {
+  const std::uint32_t particles = bonds.particles();
+  Components parts = find_components(bonds);
   Support support;
   support.held.assign(particles, 0);
   std::vector<bool> constrained(parts.count(), false);
@@ -161,7 +156,7 @@ Support find_support(const Problem<Forces>& problem, double length_unit) {
       row[constraint.dof] = 1;
       row.tail<3>() =
           parts.position[constraint.particle].cross(Vec3::Unit(constraint.dof)) / parts.radius[part];
-    } else if (problem.forces.diagonal_block(constraint.particle)(constraint.dof, constraint.dof) > 0) {
+    } else if (bonds.stiffness_of_particle(constraint.particle)(constraint.dof, constraint.dof) > 0) {
       row[constraint.dof] = 1;
     }
     parts.held[part] += row * row.transpose();
@@ -173,7 +168,7 @@ Support find_support(const Problem<Forces>& problem, double length_unit) {
     for (std::size_t i = 0; i < particles; ++i) {
       const auto& load = (*problem.load)[i];
       const std::uint32_t part = parts.of[i];
-      const Vec3 moment = load.angular() + parts.position[i].cross(load.linear());
+      const Vec3 moment = load.angular() / bonds.units().length + parts.position[i].cross(load.linear());
       wrench[part].head<3>() += load.linear();
       wrench[part].tail<3>() += moment / parts.radius[part];
       load_size[part] += load.linear().norm() + moment.norm() / parts.radius[part];
