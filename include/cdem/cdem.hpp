@@ -36,8 +36,8 @@
 #include <cdem/io/interrupt.hpp>
 #include <cdem/io/output_directory.hpp>
 #include <cdem/io/packing_file.hpp>
-#include <cdem/io/packing_state.hpp>
 #include <cdem/io/packing_quality.hpp>
+#include <cdem/io/packing_state.hpp>
 #include <cdem/io/particles_vtu.hpp>
 #include <cdem/io/results.hpp>
 #include <cdem/io/specimens_vtu.hpp>
@@ -52,8 +52,8 @@
 #include <cdem/packing/lattice.hpp>
 #include <cdem/packing/lubachevsky_stillinger.hpp>
 #include <cdem/packing/packing_generator.hpp>
-#include <cdem/packing/soft_spheres.hpp>
 #include <cdem/packing/quality.hpp>
+#include <cdem/packing/soft_spheres.hpp>
 #include <cdem/packing/tiled.hpp>
 #include <cdem/particles/constraints.hpp>
 #include <cdem/particles/inertia.hpp>

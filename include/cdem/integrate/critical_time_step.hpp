@@ -39,11 +39,18 @@ Matrix6 scaled_block(const Forces& forces, const particles::Inertia& inertia, Pa
   return block;
 }
 
-/// A template so that only programs that call it compile Eigen's solver, which takes seconds.
+/// Largest eigenvalue of a symmetric matrix, not negative where the matrix is zero or positive.
+///
+/// In two steps, as Eigen's own solver in one also compiles the eigenvectors, which takes seconds a program.
 template <class Matrix>
 double largest_eigenvalue(const Matrix& symmetric) {
-  return Eigen::SelfAdjointEigenSolver<Matrix>(symmetric, Eigen::EigenvaluesOnly)
-      .eigenvalues()[symmetric.rows() - 1];
+  const double scale = symmetric.cwiseAbs().maxCoeff();
+  if (scale == 0)
+    return 0;
+  const Eigen::Tridiagonalization<Matrix> tridiagonal(Matrix(symmetric / scale));
+  Eigen::SelfAdjointEigenSolver<Matrix> solver;
+  solver.computeFromTridiagonal(tridiagonal.diagonal(), tridiagonal.subDiagonal(), Eigen::EigenvaluesOnly);
+  return scale * solver.eigenvalues()[symmetric.rows() - 1];
 }
 
 } // namespace detail

@@ -66,15 +66,15 @@ namespace detail {
 
 /// Where the growth of a packing stands, between two cycles or within one.
 struct Growth {
-  double pressure = 1;           ///< of the last cycle
-  CollisionSums last;            ///< of the last sound cycle
-  StallWatch watch;              ///< over the cycles
-  double interval = 0;           ///< between two events, expected
-  double first_density = 0;      ///< at the start
-  bool late = false;             ///< whether the pressure has passed late_pressure
-  std::uint64_t cycle = 0;       ///< events of this cycle; 0 if the next is to begin
-  std::uint64_t events = 0;      ///< of the cycles before
-  std::uint64_t collisions = 0;  ///< of the cycles before
+  double pressure = 1;          ///< of the last cycle
+  CollisionSums last;           ///< of the last sound cycle
+  StallWatch watch;             ///< over the cycles
+  double interval = 0;          ///< between two events, expected
+  double first_density = 0;     ///< at the start
+  bool late = false;            ///< whether the pressure has passed late_pressure
+  std::uint64_t cycle = 0;      ///< events of this cycle; 0 if the next is to begin
+  std::uint64_t events = 0;     ///< of the cycles before
+  std::uint64_t collisions = 0; ///< of the cycles before
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
 };
 
@@ -320,11 +320,15 @@ inline std::string LubachevskyStillinger::words() const {
   const Parameters& p = parameters_;
   std::string text = "particles " + core::to_text(p.particles) + ", seed " + core::to_text(p.seed) +
                      (periodic_ ? ", periodic" : ", walls");
-  for (const auto& [name, value] :
-       {std::pair{"density", p.density}, {"cov", p.cov}, {"truncation", p.truncation},
-        {"smallest_radius", p.smallest_radius}, {"growth_rate", p.growth_rate},
-        {"fluid_growth_rate", p.fluid_growth_rate}, {"late_growth_rate", p.late_growth_rate},
-        {"late_pressure", p.late_pressure}, {"pressure_limit", p.pressure_limit}})
+  for (const auto& [name, value] : {std::pair{"density", p.density},
+                                    {"cov", p.cov},
+                                    {"truncation", p.truncation},
+                                    {"smallest_radius", p.smallest_radius},
+                                    {"growth_rate", p.growth_rate},
+                                    {"fluid_growth_rate", p.fluid_growth_rate},
+                                    {"late_growth_rate", p.late_growth_rate},
+                                    {"late_pressure", p.late_pressure},
+                                    {"pressure_limit", p.pressure_limit}})
     text += std::string(", ") + name + ' ' + core::to_text(value);
   return text;
 }
@@ -340,24 +344,35 @@ inline LubachevskyStillinger::State LubachevskyStillinger::state_of(const detail
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const detail::Body& body = whole.bodies[i];
     const detail::Shell& shell = whole.shells[i];
-    for (const double value : {body.centre[0], body.centre[1], body.centre[2], body.time, body.velocity[0],
-                               body.velocity[1], body.velocity[2], body.size, shell.centre[0], shell.centre[1],
-                               shell.centre[2], shell.radius})
+    for (const double value :
+         {body.centre[0], body.centre[1], body.centre[2], body.time, body.velocity[0], body.velocity[1],
+          body.velocity[2], body.size, shell.centre[0], shell.centre[1], shell.centre[2], shell.radius})
       state.spheres.push_back(value);
     state.times.push_back(whole.events[i].time);
     state.partners.push_back(whole.events[i].partner);
   }
-  state.numbers = {whole.scale,          whole.growth,         whole.energy,
-                   whole.skin,           whole.listed_skin,    whole.window,
-                   whole.sums.duration,  whole.sums.virial,    whole.sums.action,
-                   0,                    growth.pressure,      growth.last.duration,
-                   growth.last.virial,   growth.last.action,   growth.watch.sound_duration(),
-                   growth.interval,      growth.first_density};
-  state.counts = {whole.today,         whole.sums.events,
-                  whole.sums.collisions, growth.last.events,
-                  growth.last.collisions, static_cast<std::uint64_t>(growth.watch.hesitations()),
-                  growth.late ? 1U : 0U, growth.cycle,
-                  growth.events,       growth.collisions};
+  state.numbers = {whole.scale,
+                   whole.growth,
+                   whole.energy,
+                   whole.skin,
+                   whole.listed_skin,
+                   whole.window,
+                   whole.sums.duration,
+                   whole.sums.virial,
+                   whole.sums.action,
+                   0,
+                   growth.pressure,
+                   growth.last.duration,
+                   growth.last.virial,
+                   growth.last.action,
+                   growth.watch.sound_duration(),
+                   growth.interval,
+                   growth.first_density};
+  state.counts = {
+      whole.today,           whole.sums.events,      whole.sums.collisions,
+      growth.last.events,    growth.last.collisions, static_cast<std::uint64_t>(growth.watch.hesitations()),
+      growth.late ? 1U : 0U, growth.cycle,           growth.events,
+      growth.collisions};
   return state;
 }
 
@@ -441,8 +456,9 @@ inline StopReason LubachevskyStillinger::grow(detail::GrowingSpheres& spheres, d
   };
   const auto report_progress = [&] {
     const double density = density_at(spheres.scale()), first = growth.first_density;
-    monitor.report({"packing", std::clamp((density - first) / (parameters_.density - first), 0.0, 1.0),
-                    "density " + core::to_text(density) + ", reduced pressure " + core::to_text(growth.pressure)});
+    monitor.report(
+        {"packing", std::clamp((density - first) / (parameters_.density - first), 0.0, 1.0),
+         "density " + core::to_text(density) + ", reduced pressure " + core::to_text(growth.pressure)});
     reported = Clock::now();
   };
 

@@ -92,8 +92,9 @@ inline Soonest soonest_of(const double* times, std::span<const ParticleIndex> li
 /// @param sphere  at the present time
 /// @param times   [list, rounded up to a multiple of 4]
 /// @return        the first that comes before the other sphere's next event
-inline Soonest plain_contact_times(const Body* bodies, const Event* events, std::span<const ParticleIndex> list,
-                                   const Body& sphere, const Present& at, double* times) {
+inline Soonest plain_contact_times(const Body* bodies, const Event* events,
+                                   std::span<const ParticleIndex> list, const Body& sphere, const Present& at,
+                                   double* times) {
   for (std::size_t k = 0; k < list.size(); ++k) {
     const Body& other = bodies[list[k]];
     const Vec3 apart = other.centre_at(at.now) - sphere.centre;
@@ -164,10 +165,10 @@ struct Four {
     const __m256d nearing = _mm256_cmp_pd(qb, zero, _CMP_LT_OQ);
     const __m256d above = _mm256_blendv_pd(qb + root, _mm256_max_pd(qc, zero), nearing);
     const __m256d below = _mm256_blendv_pd(zero - qa, root - qb, nearing);
-    const __m256d meet = _mm256_blendv_pd(_mm256_cmp_pd(qa, zero, _CMP_LT_OQ),
-                                          _mm256_or_pd(_mm256_cmp_pd(discriminant, zero, _CMP_GE_OQ),
-                                                       _mm256_cmp_pd(qc, zero, _CMP_LE_OQ)),
-                                          nearing);
+    const __m256d meet = _mm256_blendv_pd(
+        _mm256_cmp_pd(qa, zero, _CMP_LT_OQ),
+        _mm256_or_pd(_mm256_cmp_pd(discriminant, zero, _CMP_GE_OQ), _mm256_cmp_pd(qc, zero, _CMP_LE_OQ)),
+        nearing);
     const __m256d touch = _mm256_blendv_pd(infinity, above / below, meet);
     _mm256_storeu_pd(times + k, touch);
     const __m256d next = _mm256_setr_pd(events[j0].time, events[j1].time, events[j2].time, events[j3].time);
@@ -181,8 +182,8 @@ struct Four {
   }
   const __m128d pair = _mm_min_pd(_mm256_castpd256_pd128(soonest), _mm256_extractf128_pd(soonest, 1));
   const double time = _mm_cvtsd_f64(_mm_min_sd(pair, _mm_unpackhi_pd(pair, pair)));
-  const auto lanes = static_cast<unsigned>(
-      _mm256_movemask_pd(_mm256_cmp_pd(soonest, _mm256_set1_pd(time), _CMP_EQ_OQ)));
+  const auto lanes =
+      static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(soonest, _mm256_set1_pd(time), _CMP_EQ_OQ)));
   if (time < never && (_mm256_movemask_pd(alike) != 0 || (lanes & (lanes - 1)) != 0))
     return soonest_of(times, list, events, at.now);
   alignas(32) double places[4];
