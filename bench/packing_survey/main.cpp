@@ -10,9 +10,8 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
-#include <vector>
-
 #include <sys/resource.h>
+#include <vector>
 
 namespace {
 
@@ -74,7 +73,8 @@ int survey(int seeds, int first) {
     std::printf("%3d: %5u spheres CoV %.2f growth %.3f %-8s ", seed, p.particles, p.cov, p.growth_rate,
                 p.boundary == Boundary::walls ? "walls" : "periodic");
     print(packing);
-    const bool sound = packing.report.reason == StopReason::pressure_limit && packing.report.largest_overlap < 1e-10;
+    const bool sound =
+        packing.report.reason == StopReason::pressure_limit && packing.report.largest_overlap < 1e-10;
     bad += sound ? 0 : 1;
   }
   std::printf("%d of %d did not end at the pressure limit without overlap\n", bad, seeds);
@@ -103,7 +103,8 @@ int run(int argc, char** argv) {
   });
   const Packing packing = LubachevskyStillinger(p).pack(pool, monitor);
   print(packing);
-  std::printf("wall %.1f s, processor %.1f s, %.3f million collisions a second, %.0f bytes a sphere, checksum %016llx\n",
+  std::printf("wall %.1f s, processor %.1f s, %.3f million collisions a second, %.0f bytes a sphere, "
+              "checksum %016llx\n",
               packing.report.wall_seconds, cpu_seconds(),
               1e-6 * static_cast<double>(packing.report.collisions) / packing.report.wall_seconds,
               largest_memory() / p.particles, static_cast<unsigned long long>(checksum(packing)));

@@ -53,7 +53,8 @@ constexpr std::string_view to_string(StopReason reason) {
 
 /// A run in mid-course: all that the rest of it depends on. io::save_packing_state() keeps it in a file.
 struct GrowthState {
-  std::vector<double> spheres; ///< [spheres x 12] centre, time of the next event, velocity, size, shell (centre, radius)
+  std::vector<double>
+      spheres; ///< [spheres x 12] centre, time of the next event, velocity, size, shell (centre, radius)
   std::vector<ParticleIndex> partners; ///< [spheres] of the next event
   std::vector<double> numbers;         ///< of the run
   std::vector<std::uint64_t> counts;   ///< of the run
@@ -71,15 +72,15 @@ namespace detail {
 
 /// Where the growth of a packing stands, between two cycles or within one.
 struct Growth {
-  double pressure = 1;           ///< of the last cycle
-  CollisionSums last;            ///< of the last sound cycle
-  StallWatch watch;              ///< over the cycles
-  double interval = 0;           ///< between two events, expected
-  double first_density = 0;      ///< at the start
-  bool late = false;             ///< whether the pressure has passed late_pressure
-  std::uint64_t cycle = 0;       ///< events of this cycle; 0 if the next is to begin
-  std::uint64_t events = 0;      ///< of the cycles before
-  std::uint64_t collisions = 0;  ///< of the cycles before
+  double pressure = 1;          ///< of the last cycle
+  CollisionSums last;           ///< of the last sound cycle
+  StallWatch watch;             ///< over the cycles
+  double interval = 0;          ///< between two events, expected
+  double first_density = 0;     ///< at the start
+  bool late = false;            ///< whether the pressure has passed late_pressure
+  std::uint64_t cycle = 0;      ///< events of this cycle; 0 if the next is to begin
+  std::uint64_t events = 0;     ///< of the cycles before
+  std::uint64_t collisions = 0; ///< of the cycles before
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
 };
 
@@ -325,11 +326,15 @@ inline std::string LubachevskyStillinger::words() const {
   const Parameters& p = parameters_;
   std::string text = "particles " + core::to_text(p.particles) + ", seed " + core::to_text(p.seed) +
                      (periodic_ ? ", periodic" : ", walls");
-  for (const auto& [name, value] :
-       {std::pair{"density", p.density}, {"cov", p.cov}, {"truncation", p.truncation},
-        {"smallest_radius", p.smallest_radius}, {"growth_rate", p.growth_rate},
-        {"fluid_growth_rate", p.fluid_growth_rate}, {"late_growth_rate", p.late_growth_rate},
-        {"late_pressure", p.late_pressure}, {"pressure_limit", p.pressure_limit}})
+  for (const auto& [name, value] : {std::pair{"density", p.density},
+                                    {"cov", p.cov},
+                                    {"truncation", p.truncation},
+                                    {"smallest_radius", p.smallest_radius},
+                                    {"growth_rate", p.growth_rate},
+                                    {"fluid_growth_rate", p.fluid_growth_rate},
+                                    {"late_growth_rate", p.late_growth_rate},
+                                    {"late_pressure", p.late_pressure},
+                                    {"pressure_limit", p.pressure_limit}})
     text += std::string(", ") + name + ' ' + core::to_text(value);
   return text;
 }
@@ -344,23 +349,34 @@ inline LubachevskyStillinger::State LubachevskyStillinger::state_of(const detail
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const detail::Body& body = whole.bodies[i];
     const detail::Shell& shell = whole.shells[i];
-    for (const double value : {body.origin[0], body.origin[1], body.origin[2], body.next, body.velocity[0],
-                               body.velocity[1], body.velocity[2], body.size, shell.centre[0], shell.centre[1],
-                               shell.centre[2], shell.radius})
+    for (const double value :
+         {body.origin[0], body.origin[1], body.origin[2], body.next, body.velocity[0], body.velocity[1],
+          body.velocity[2], body.size, shell.centre[0], shell.centre[1], shell.centre[2], shell.radius})
       state.spheres.push_back(value);
     state.partners.push_back(whole.partners[i]);
   }
-  state.numbers = {whole.scale,          whole.growth,         whole.energy,
-                   whole.skin,           whole.listed_skin,    whole.window,
-                   whole.sums.duration,  whole.sums.virial,    whole.sums.action,
-                   0,                    growth.pressure,      growth.last.duration,
-                   growth.last.virial,   growth.last.action,   growth.watch.sound_duration(),
-                   growth.interval,      growth.first_density};
-  state.counts = {whole.today,         whole.sums.events,
-                  whole.sums.collisions, growth.last.events,
-                  growth.last.collisions, static_cast<std::uint64_t>(growth.watch.hesitations()),
-                  growth.late ? 1U : 0U, growth.cycle,
-                  growth.events,       growth.collisions};
+  state.numbers = {whole.scale,
+                   whole.growth,
+                   whole.energy,
+                   whole.skin,
+                   whole.listed_skin,
+                   whole.window,
+                   whole.sums.duration,
+                   whole.sums.virial,
+                   whole.sums.action,
+                   0,
+                   growth.pressure,
+                   growth.last.duration,
+                   growth.last.virial,
+                   growth.last.action,
+                   growth.watch.sound_duration(),
+                   growth.interval,
+                   growth.first_density};
+  state.counts = {
+      whole.today,           whole.sums.events,      whole.sums.collisions,
+      growth.last.events,    growth.last.collisions, static_cast<std::uint64_t>(growth.watch.hesitations()),
+      growth.late ? 1U : 0U, growth.cycle,           growth.events,
+      growth.collisions};
   return state;
 }
 
@@ -369,7 +385,8 @@ inline detail::GrowingSpheres LubachevskyStillinger::spheres_of(const State& sta
   core::expect(state.parameters == words(), "state of a run with " + state.parameters, "",
                "one with " + words() + " is expected");
   const std::size_t count = sizes_.size();
-  core::expect(state.spheres.size() == 12 * count && state.partners.size() == count && state.numbers.size() == 17 && state.counts.size() == 10,
+  core::expect(state.spheres.size() == 12 * count && state.partners.size() == count &&
+                   state.numbers.size() == 17 && state.counts.size() == 10,
                "numbers in a state", state.spheres.size(), "a complete state is expected");
   detail::GrowingSpheres::State whole;
   for (std::size_t i = 0; i < count; ++i) {
@@ -426,7 +443,7 @@ inline double LubachevskyStillinger::growth_at(double density, bool late) const 
 /// Room that a sphere gets to move in before its list of neighbours is renewed: about its free path, which falls as
 /// the inverse of the pressure. Any value gives the same motion; this one is quick.
 inline double LubachevskyStillinger::skin_at(double scale, double pressure) const {
-  const double skin = scale * std::clamp(4 / pressure, 0.03, 0.3);
+  const double skin = scale * std::clamp(4 / pressure, 0.02, 0.22);
   // Shells may not meet a periodic image of what they meet already.
   return periodic_ ? std::min(skin, 0.25 - largest_size_ * scale_at(parameters_.density)) : skin;
 }
@@ -443,8 +460,9 @@ inline StopReason LubachevskyStillinger::grow(detail::GrowingSpheres& spheres, d
   };
   const auto report_progress = [&] {
     const double density = density_at(spheres.scale()), first = growth.first_density;
-    monitor.report({"packing", std::clamp((density - first) / (parameters_.density - first), 0.0, 1.0),
-                    "density " + core::to_text(density) + ", reduced pressure " + core::to_text(growth.pressure)});
+    monitor.report(
+        {"packing", std::clamp((density - first) / (parameters_.density - first), 0.0, 1.0),
+         "density " + core::to_text(density) + ", reduced pressure " + core::to_text(growth.pressure)});
     reported = Clock::now();
   };
 

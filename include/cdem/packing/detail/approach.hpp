@@ -127,16 +127,15 @@ struct Four {
 /// plain_contact_times() in registers of four numbers, without fused multiply-add.
 [[gnu::target("avx2")]] inline Soonest avx2_contact_times(const Body* bodies,
                                                           std::span<const ParticleIndex> list,
-                                                          const Body& sphere, const Vec3& centre, const Present& at,
-                                                          double* times) {
+                                                          const Body& sphere, const Vec3& centre,
+                                                          const Present& at, double* times) {
   const __m256d zero = _mm256_setzero_pd(), now = _mm256_set1_pd(at.now), scale = _mm256_set1_pd(at.scale),
                 growth = _mm256_set1_pd(at.growth), infinity = _mm256_set1_pd(never);
   // Adding 3 * 2^51 leaves no bits for a fraction; without a period everything is its own nearest image.
   const __m256d shift = _mm256_set1_pd(0x1.8p52), period = _mm256_set1_pd(at.periodic ? 1 : 0);
-  const __m256d x = _mm256_set1_pd(centre[0]), y = _mm256_set1_pd(centre[1]),
-                z = _mm256_set1_pd(centre[2]), u = _mm256_set1_pd(sphere.velocity[0]),
-                v = _mm256_set1_pd(sphere.velocity[1]), w = _mm256_set1_pd(sphere.velocity[2]),
-                size = _mm256_set1_pd(sphere.size);
+  const __m256d x = _mm256_set1_pd(centre[0]), y = _mm256_set1_pd(centre[1]), z = _mm256_set1_pd(centre[2]),
+                u = _mm256_set1_pd(sphere.velocity[0]), v = _mm256_set1_pd(sphere.velocity[1]),
+                w = _mm256_set1_pd(sphere.velocity[2]), size = _mm256_set1_pd(sphere.size);
   __m256d soonest = infinity, place_of_soonest = zero, alike = zero;
   __m256d here = _mm256_setr_pd(0, 1, 2, 3);
   const std::size_t last = list.size() - 1;
@@ -161,13 +160,14 @@ struct Four {
     const __m256d nearing = _mm256_cmp_pd(qb, zero, _CMP_LT_OQ);
     const __m256d above = _mm256_blendv_pd(qb + root, _mm256_max_pd(qc, zero), nearing);
     const __m256d below = _mm256_blendv_pd(zero - qa, root - qb, nearing);
-    const __m256d meet = _mm256_blendv_pd(_mm256_cmp_pd(qa, zero, _CMP_LT_OQ),
-                                          _mm256_or_pd(_mm256_cmp_pd(discriminant, zero, _CMP_GE_OQ),
-                                                       _mm256_cmp_pd(qc, zero, _CMP_LE_OQ)),
-                                          nearing);
+    const __m256d meet = _mm256_blendv_pd(
+        _mm256_cmp_pd(qa, zero, _CMP_LT_OQ),
+        _mm256_or_pd(_mm256_cmp_pd(discriminant, zero, _CMP_GE_OQ), _mm256_cmp_pd(qc, zero, _CMP_LE_OQ)),
+        nearing);
     const __m256d touch = _mm256_blendv_pd(infinity, above / below, meet);
     _mm256_storeu_pd(times + k, touch);
-    const __m256d contact = _mm256_blendv_pd(infinity, touch, _mm256_cmp_pd(now + touch, place.w, _CMP_LT_OQ));
+    const __m256d contact =
+        _mm256_blendv_pd(infinity, touch, _mm256_cmp_pd(now + touch, place.w, _CMP_LT_OQ));
     const __m256d sooner = _mm256_cmp_pd(contact, soonest, _CMP_LT_OQ);
     alike = _mm256_or_pd(alike, _mm256_and_pd(_mm256_cmp_pd(contact, soonest, _CMP_EQ_OQ),
                                               _mm256_cmp_pd(contact, infinity, _CMP_LT_OQ)));
@@ -177,8 +177,8 @@ struct Four {
   }
   const __m128d pair = _mm_min_pd(_mm256_castpd256_pd128(soonest), _mm256_extractf128_pd(soonest, 1));
   const double time = _mm_cvtsd_f64(_mm_min_sd(pair, _mm_unpackhi_pd(pair, pair)));
-  const auto lanes = static_cast<unsigned>(
-      _mm256_movemask_pd(_mm256_cmp_pd(soonest, _mm256_set1_pd(time), _CMP_EQ_OQ)));
+  const auto lanes =
+      static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(soonest, _mm256_set1_pd(time), _CMP_EQ_OQ)));
   if (time < never && (_mm256_movemask_pd(alike) != 0 || (lanes & (lanes - 1)) != 0))
     return soonest_of(times, list, bodies, at.now);
   alignas(32) double places[4];
@@ -201,8 +201,8 @@ inline bool has_avx2() noexcept {
 #endif
 
 /// plain_contact_times() by the quickest way this processor has.
-inline Soonest contact_times(const Body* bodies, std::span<const ParticleIndex> list,
-                             const Body& sphere, const Vec3& centre, const Present& at, double* times) {
+inline Soonest contact_times(const Body* bodies, std::span<const ParticleIndex> list, const Body& sphere,
+                             const Vec3& centre, const Present& at, double* times) {
 #if defined(__x86_64__) && defined(__GNUC__)
   if (has_avx2())
     return avx2_contact_times(bodies, list, sphere, centre, at, times);

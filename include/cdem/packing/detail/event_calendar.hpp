@@ -59,9 +59,7 @@ public:
   double end_of_today() const { return day_ * static_cast<double>(today_ + 1); }
 
   /// Enters an appointment after today.
-  void add_later(std::size_t lane, const Appointment& appointment) {
-    enter(lane, appointment, today_ + 1);
-  }
+  void add_later(std::size_t lane, const Appointment& appointment) { enter(lane, appointment, today_ + 1); }
   /// Enters an appointment today or later, between two days' work.
   void add(std::size_t lane, const Appointment& appointment) { enter(lane, appointment, today_); }
 

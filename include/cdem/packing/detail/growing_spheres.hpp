@@ -158,9 +158,17 @@ public:
 
   /// The state between two calls of run().
   State state() const {
-    return {spheres_.bodies, spheres_.partners, spheres_.neighbours.shells(), sums_,
-            spheres_.scale,  spheres_.growth, energy_,                      spheres_.skin,
-            listed_skin_,    window_,         spheres_.calendar.today()};
+    return {spheres_.bodies,
+            spheres_.partners,
+            spheres_.neighbours.shells(),
+            sums_,
+            spheres_.scale,
+            spheres_.growth,
+            energy_,
+            spheres_.skin,
+            listed_skin_,
+            window_,
+            spheres_.calendar.today()};
   }
 
 private:

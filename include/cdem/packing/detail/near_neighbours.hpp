@@ -30,8 +30,8 @@ struct Shell {
 class NearNeighbours {
 public:
   NearNeighbours(std::size_t spheres, bool periodic)
-      : grid_(spheres, cell_edge(spheres), periodic), shells_(spheres), lists_(spheres),
-        periodic_(periodic) {}
+      : grid_(spheres, cell_edge(spheres), periodic), shells_(spheres), lists_(spheres), periodic_(periodic) {
+  }
 
   const Shell& shell(ParticleIndex sphere) const { return shells_[sphere]; }
   const CellGrid& grid() const { return grid_; }

@@ -66,7 +66,9 @@ struct HugePages {
   void deallocate(T* memory, std::size_t count) noexcept {
     ::operator delete(memory, alignment(count * sizeof(T)));
   }
-  friend bool operator==(const HugePages&, const HugePages&) noexcept { return true; }
+  friend bool operator==(const HugePages&, const HugePages&) noexcept {
+    return true;
+  }
 
 private:
   static std::align_val_t alignment(std::size_t bytes) {
