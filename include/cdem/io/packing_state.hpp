@@ -11,12 +11,11 @@ namespace cdem::io {
 /// Saves where a run stands, for example as LubachevskyStillinger::Checkpoints::save.
 ///
 /// @throws core::FileError  if the file cannot be written; what was there before is still there then
-/// @complexity O(particles), no copy; about 120 bytes a particle
+/// @complexity O(particles), no copy; about 100 bytes a particle
 inline void save_packing_state(const std::filesystem::path& path,
                                const packing::LubachevskyStillinger::State& state) {
   CheckpointWriter file(path);
   file.add("spheres", state.spheres);
-  file.add("times", state.times);
   file.add("partners", state.partners);
   file.add("numbers", state.numbers);
   file.add("counts", state.counts);
@@ -31,7 +30,6 @@ inline packing::LubachevskyStillinger::State load_packing_state(const std::files
   const CheckpointReader file(path);
   packing::LubachevskyStillinger::State state;
   file.read("spheres", state.spheres);
-  file.read("times", state.times);
   file.read("partners", state.partners);
   file.read("numbers", state.numbers);
   file.read("counts", state.counts);

@@ -25,6 +25,12 @@
 
 namespace cdem::packing {
 
+/// What bounds the cube that is packed.
+enum class Boundary : std::uint8_t {
+  periodic, ///< the opposite face follows
+  walls     ///< six flat, hard walls
+};
+
 /// Why the growth of a packing ended.
 enum class StopReason : std::uint8_t {
   density_reached, ///< the density asked for
@@ -47,8 +53,8 @@ constexpr std::string_view to_string(StopReason reason) {
 
 /// A run in mid-course: all that the rest of it depends on. io::save_packing_state() keeps it in a file.
 struct GrowthState {
-  std::vector<double> spheres; ///< [spheres x 12] centre, local time, velocity, size, shell (centre, radius)
-  std::vector<double> times;   ///< [spheres] of the next event
+  std::vector<double>
+      spheres; ///< [spheres x 12] centre, time of the next event, velocity, size, shell (centre, radius)
   std::vector<ParticleIndex> partners; ///< [spheres] of the next event
   std::vector<double> numbers;         ///< of the run
   std::vector<std::uint64_t> counts;   ///< of the run
@@ -339,17 +345,15 @@ inline LubachevskyStillinger::State LubachevskyStillinger::state_of(const detail
   State state;
   state.parameters = words();
   state.spheres.reserve(12 * spheres.size());
-  state.times.reserve(spheres.size());
   state.partners.reserve(spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const detail::Body& body = whole.bodies[i];
     const detail::Shell& shell = whole.shells[i];
     for (const double value :
-         {body.centre[0], body.centre[1], body.centre[2], body.time, body.velocity[0], body.velocity[1],
+         {body.origin[0], body.origin[1], body.origin[2], body.next, body.velocity[0], body.velocity[1],
           body.velocity[2], body.size, shell.centre[0], shell.centre[1], shell.centre[2], shell.radius})
       state.spheres.push_back(value);
-    state.times.push_back(whole.events[i].time);
-    state.partners.push_back(whole.events[i].partner);
+    state.partners.push_back(whole.partners[i]);
   }
   state.numbers = {whole.scale,
                    whole.growth,
@@ -381,15 +385,15 @@ inline detail::GrowingSpheres LubachevskyStillinger::spheres_of(const State& sta
   core::expect(state.parameters == words(), "state of a run with " + state.parameters, "",
                "one with " + words() + " is expected");
   const std::size_t count = sizes_.size();
-  core::expect(state.spheres.size() == 12 * count && state.times.size() == count &&
-                   state.partners.size() == count && state.numbers.size() == 17 && state.counts.size() == 10,
+  core::expect(state.spheres.size() == 12 * count && state.partners.size() == count &&
+                   state.numbers.size() == 17 && state.counts.size() == 10,
                "numbers in a state", state.spheres.size(), "a complete state is expected");
   detail::GrowingSpheres::State whole;
   for (std::size_t i = 0; i < count; ++i) {
     const double* const x = state.spheres.data() + 12 * i;
     whole.bodies.push_back({Vec3(x[0], x[1], x[2]), x[3], Vec3(x[4], x[5], x[6]), x[7]});
     whole.shells.push_back({Vec3(x[8], x[9], x[10]), x[11]});
-    whole.events.push_back({state.times[i], state.partners[i]});
+    whole.partners.push_back(state.partners[i]);
   }
   const std::vector<double>& x = state.numbers;
   whole.scale = x[0];
@@ -439,7 +443,7 @@ inline double LubachevskyStillinger::growth_at(double density, bool late) const 
 /// Room that a sphere gets to move in before its list of neighbours is renewed: about its free path, which falls as
 /// the inverse of the pressure. Any value gives the same motion; this one is quick.
 inline double LubachevskyStillinger::skin_at(double scale, double pressure) const {
-  const double skin = scale * std::clamp(4 / pressure, 0.03, 0.3);
+  const double skin = scale * std::clamp(4 / pressure, 0.02, 0.22);
   // Shells may not meet a periodic image of what they meet already.
   return periodic_ ? std::min(skin, 0.25 - largest_size_ * scale_at(parameters_.density)) : skin;
 }

@@ -77,11 +77,11 @@ struct Soonest {
 };
 
 /// Of several at the same time the one with the smallest number.
-inline Soonest soonest_of(const double* times, std::span<const ParticleIndex> list, const Event* events,
+inline Soonest soonest_of(const double* times, std::span<const ParticleIndex> list, const Body* bodies,
                           double now) {
   Soonest soonest;
   for (std::size_t k = 0; k < list.size(); ++k)
-    if (now + times[k] < events[list[k]].time &&
+    if (now + times[k] < bodies[list[k]].next &&
         (times[k] < soonest.time || (times[k] == soonest.time && list[k] < list[soonest.place])))
       soonest = {times[k], k};
   return soonest;
@@ -89,21 +89,20 @@ inline Soonest soonest_of(const double* times, std::span<const ParticleIndex> li
 
 /// Times from now until one sphere touches each of others, in the order of the list; the same bits on any processor.
 /// @param list    not empty
-/// @param sphere  at the present time
+/// @param centre  of the sphere at the present time
 /// @param times   [list, rounded up to a multiple of 4]
 /// @return        the first that comes before the other sphere's next event
-inline Soonest plain_contact_times(const Body* bodies, const Event* events,
-                                   std::span<const ParticleIndex> list, const Body& sphere, const Present& at,
-                                   double* times) {
+inline Soonest plain_contact_times(const Body* bodies, std::span<const ParticleIndex> list,
+                                   const Body& sphere, const Vec3& centre, const Present& at, double* times) {
   for (std::size_t k = 0; k < list.size(); ++k) {
     const Body& other = bodies[list[k]];
-    const Vec3 apart = other.centre_at(at.now) - sphere.centre;
+    const Vec3 apart = other.centre_at(at.now) - centre;
     const double size = sphere.size + other.size;
     times[k] = Approach(at.periodic ? nearest_image(apart) : apart, other.velocity - sphere.velocity,
                         size * at.scale, size * at.growth)
                    .time_to_contact();
   }
-  return soonest_of(times, list, events, at.now);
+  return soonest_of(times, list, bodies, at.now);
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -126,32 +125,28 @@ struct Four {
 }
 
 /// plain_contact_times() in registers of four numbers, without fused multiply-add.
-[[gnu::target("avx2")]] inline Soonest avx2_contact_times(const Body* bodies, const Event* events,
+[[gnu::target("avx2")]] inline Soonest avx2_contact_times(const Body* bodies,
                                                           std::span<const ParticleIndex> list,
-                                                          const Body& sphere, const Present& at,
-                                                          double* times) {
+                                                          const Body& sphere, const Vec3& centre,
+                                                          const Present& at, double* times) {
   const __m256d zero = _mm256_setzero_pd(), now = _mm256_set1_pd(at.now), scale = _mm256_set1_pd(at.scale),
                 growth = _mm256_set1_pd(at.growth), infinity = _mm256_set1_pd(never);
   // Adding 3 * 2^51 leaves no bits for a fraction; without a period everything is its own nearest image.
   const __m256d shift = _mm256_set1_pd(0x1.8p52), period = _mm256_set1_pd(at.periodic ? 1 : 0);
-  const __m256d x = _mm256_set1_pd(sphere.centre[0]), y = _mm256_set1_pd(sphere.centre[1]),
-                z = _mm256_set1_pd(sphere.centre[2]), u = _mm256_set1_pd(sphere.velocity[0]),
-                v = _mm256_set1_pd(sphere.velocity[1]), w = _mm256_set1_pd(sphere.velocity[2]),
-                size = _mm256_set1_pd(sphere.size);
+  const __m256d x = _mm256_set1_pd(centre[0]), y = _mm256_set1_pd(centre[1]), z = _mm256_set1_pd(centre[2]),
+                u = _mm256_set1_pd(sphere.velocity[0]), v = _mm256_set1_pd(sphere.velocity[1]),
+                w = _mm256_set1_pd(sphere.velocity[2]), size = _mm256_set1_pd(sphere.size);
   __m256d soonest = infinity, place_of_soonest = zero, alike = zero;
   __m256d here = _mm256_setr_pd(0, 1, 2, 3);
   const std::size_t last = list.size() - 1;
   for (std::size_t k = 0; k < list.size(); k += 4) {
-    const ParticleIndex j0 = list[k], j1 = list[std::min(k + 1, last)], j2 = list[std::min(k + 2, last)],
-                        j3 = list[std::min(k + 3, last)];
-    const double* const a = bodies[j0].centre.data();
-    const double* const b = bodies[j1].centre.data();
-    const double* const c = bodies[j2].centre.data();
-    const double* const d = bodies[j3].centre.data();
+    const double* const a = bodies[list[k]].origin.data();
+    const double* const b = bodies[list[std::min(k + 1, last)]].origin.data();
+    const double* const c = bodies[list[std::min(k + 2, last)]].origin.data();
+    const double* const d = bodies[list[std::min(k + 3, last)]].origin.data();
     const Four place = four_of(a, b, c, d), rate = four_of(a + 4, b + 4, c + 4, d + 4);
-    const __m256d time = now - place.w;
-    __m256d dx = (place.x + rate.x * time) - x, dy = (place.y + rate.y * time) - y,
-            dz = (place.z + rate.z * time) - z;
+    __m256d dx = (place.x + rate.x * now) - x, dy = (place.y + rate.y * now) - y,
+            dz = (place.z + rate.z * now) - z;
     dx = dx - period * ((dx + shift) - shift);
     dy = dy - period * ((dy + shift) - shift);
     dz = dz - period * ((dz + shift) - shift);
@@ -171,8 +166,8 @@ struct Four {
         nearing);
     const __m256d touch = _mm256_blendv_pd(infinity, above / below, meet);
     _mm256_storeu_pd(times + k, touch);
-    const __m256d next = _mm256_setr_pd(events[j0].time, events[j1].time, events[j2].time, events[j3].time);
-    const __m256d contact = _mm256_blendv_pd(infinity, touch, _mm256_cmp_pd(now + touch, next, _CMP_LT_OQ));
+    const __m256d contact =
+        _mm256_blendv_pd(infinity, touch, _mm256_cmp_pd(now + touch, place.w, _CMP_LT_OQ));
     const __m256d sooner = _mm256_cmp_pd(contact, soonest, _CMP_LT_OQ);
     alike = _mm256_or_pd(alike, _mm256_and_pd(_mm256_cmp_pd(contact, soonest, _CMP_EQ_OQ),
                                               _mm256_cmp_pd(contact, infinity, _CMP_LT_OQ)));
@@ -185,7 +180,7 @@ struct Four {
   const auto lanes =
       static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(soonest, _mm256_set1_pd(time), _CMP_EQ_OQ)));
   if (time < never && (_mm256_movemask_pd(alike) != 0 || (lanes & (lanes - 1)) != 0))
-    return soonest_of(times, list, events, at.now);
+    return soonest_of(times, list, bodies, at.now);
   alignas(32) double places[4];
   _mm256_store_pd(places, place_of_soonest);
   const auto place = static_cast<std::size_t>(places[std::countr_zero(lanes)]);
@@ -206,13 +201,13 @@ inline bool has_avx2() noexcept {
 #endif
 
 /// plain_contact_times() by the quickest way this processor has.
-inline Soonest contact_times(const Body* bodies, const Event* events, std::span<const ParticleIndex> list,
-                             const Body& sphere, const Present& at, double* times) {
+inline Soonest contact_times(const Body* bodies, std::span<const ParticleIndex> list, const Body& sphere,
+                             const Vec3& centre, const Present& at, double* times) {
 #if defined(__x86_64__) && defined(__GNUC__)
   if (has_avx2())
-    return avx2_contact_times(bodies, events, list, sphere, at, times);
+    return avx2_contact_times(bodies, list, sphere, centre, at, times);
 #endif
-  return plain_contact_times(bodies, events, list, sphere, at, times);
+  return plain_contact_times(bodies, list, sphere, centre, at, times);
 }
 
 } // namespace cdem::packing::detail

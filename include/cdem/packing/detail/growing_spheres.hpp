@@ -17,8 +17,8 @@ namespace cdem::packing::detail {
 
 /// Hard spheres of equal mass in the unit cube, radius_i(t) = size_i * scale(t), scale growing linearly in time.
 ///
-/// Each sphere has a local time: an event moves only the spheres it concerns (Lubachevsky 1991). Time starts at 0 in
-/// every cycle, so that its resolution follows the shrinking gaps.
+/// An event moves only the spheres it concerns (Lubachevsky 1991). Time starts at 0 in every cycle, so that its
+/// resolution follows the shrinking gaps.
 ///
 /// Collisions are elastic in the frame of the moving surfaces: the approach v_n - G of a pair turns into its
 /// opposite, so that spheres part faster than they grow and energy rises; begin_cycle() takes it out again.
@@ -34,7 +34,7 @@ public:
   /// What lasts from window to window. The same state goes on to the same bytes.
   struct State {
     SphereArray<Body> bodies;
-    SphereArray<Event> events;
+    SphereArray<ParticleIndex> partners;
     SphereArray<Shell> shells;
     CollisionSums sums;
     double scale = 0, growth = 0, energy = 0, skin = 0, listed_skin = never, window = 0;
@@ -50,7 +50,7 @@ public:
       : spheres_(centres.size(), periodic), periodic_(periodic) {
     spheres_.scale = scale;
     for (std::size_t i = 0; i < size(); ++i)
-      spheres_.bodies[i] = {centres[i], 0, velocities[i], sizes[i]};
+      spheres_.bodies[i] = {centres[i], never, velocities[i], sizes[i]};
   }
 
   /// Goes on from a state.
@@ -58,7 +58,7 @@ public:
       : spheres_(state.bodies.size(), periodic), sums_(state.sums), energy_(state.energy),
         listed_skin_(state.listed_skin), window_(state.window), periodic_(periodic) {
     spheres_.bodies = std::move(state.bodies);
-    spheres_.events = std::move(state.events);
+    spheres_.partners = std::move(state.partners);
     spheres_.scale = state.scale;
     spheres_.growth = state.growth;
     spheres_.skin = state.skin;
@@ -78,7 +78,7 @@ public:
   std::uint64_t repeated_windows() const noexcept { return repeated_; }
 
   /// Centre of a sphere; valid after synchronise().
-  const Vec3& centre(std::size_t sphere) const { return spheres_.bodies[sphere].centre; }
+  const Vec3& centre(std::size_t sphere) const { return spheres_.bodies[sphere].origin; }
   const Vec3& velocity(std::size_t sphere) const { return spheres_.bodies[sphere].velocity; }
   double radius(std::size_t sphere) const { return spheres_.bodies[sphere].size * scale(); }
 
@@ -91,10 +91,8 @@ public:
 
   /// Brings all spheres to the present and sets the clock to 0. run() cannot go on before the next begin_cycle().
   void synchronise() {
-    for (Body& body : spheres_.bodies) {
-      body.advance(now_);
-      body.time = 0;
-    }
+    for (Body& body : spheres_.bodies)
+      body.origin = body.centre_at(now_);
     spheres_.scale = spheres_.scale_at(now_);
     now_ = 0;
   }
@@ -121,14 +119,16 @@ public:
       rebuild_lists();
     }
     spheres_.skin = std::min(skin, listed_skin_);
-    std::fill(spheres_.events.begin(), spheres_.events.end(), Event{});
+    for (ParticleIndex i = 0; i < size(); ++i)
+      spheres_.set_event(i, {});
     SphereArray<Event> next(size());
     core::parallel_for(pool, size(), [&](std::size_t begin, std::size_t end) {
       std::vector<double> times;
       for (std::size_t i = begin; i < end; ++i)
         next[i] = spheres_.next_event(static_cast<ParticleIndex>(i), 0, times);
     });
-    spheres_.events.swap(next);
+    for (ParticleIndex i = 0; i < size(); ++i)
+      spheres_.set_event(i, next[i]);
     window_ = interval * static_cast<double>(events_per_window());
     open_calendar(0, pool);
   }
@@ -159,7 +159,7 @@ public:
   /// The state between two calls of run().
   State state() const {
     return {spheres_.bodies,
-            spheres_.events,
+            spheres_.partners,
             spheres_.neighbours.shells(),
             sums_,
             spheres_.scale,
@@ -201,7 +201,7 @@ private:
       const std::size_t first = size() * lane / lanes, last = size() * (lane + 1) / lanes;
       workers_[lane].lane = lane;
       for (std::size_t i = first; i < last; ++i)
-        spheres_.calendar.add(lane, {spheres_.events[i].time, static_cast<ParticleIndex>(i)});
+        spheres_.calendar.add(lane, {spheres_.bodies[i].next, static_cast<ParticleIndex>(i)});
     }
   }
 
@@ -269,12 +269,12 @@ private:
       const std::vector<Appointment>& today = spheres_.calendar.today_of(from);
       for (std::size_t k = 0; k < today.size(); ++k) {
         if (k + 16 < today.size())
-          __builtin_prefetch(&spheres_.events[today[k + 16].sphere]);
+          __builtin_prefetch(&spheres_.bodies[today[k + 16].sphere], 1);
         const Appointment& a = today[k];
         if (a.time >= w.end || (w.turn == Worker::Turn::first && !w.zone.holds(a.sphere)) ||
-            spheres_.events[a.sphere].time != a.time)
+            spheres_.bodies[a.sphere].next != a.time)
           continue;
-        if (spheres_.events[a.sphere].partner == SphereCollisions::own_shell)
+        if (spheres_.partners[a.sphere] == SphereCollisions::own_shell)
           w.leaving.push_back(a.sphere);
         else
           w.due.push_back(a);
@@ -312,6 +312,7 @@ private:
         w.sudden.pop_back();
         spheres_.handle(w, appointment);
       } else if (next < w.due.size()) {
+
         spheres_.fetch_ahead(w.due, next);
         spheres_.handle(w, w.due[next++]);
       } else
@@ -371,14 +372,16 @@ private:
     trouble_ = repeated ? trouble_ + 4 : std::max(trouble_ - 1, 0);
     if (trouble_ > 16) {
       trouble_ = 0;
-      windows_alone_ = 512;
-    }
+      windows_alone_ = pause_;
+      pause_ = std::min(2 * pause_, 1 << 14);
+    } else if (trouble_ == 0)
+      pause_ = 512;
   }
 
   void put_back(std::vector<Worker>& workers) {
     for (Worker& w : workers)
       for (auto saved = w.saved.rbegin(); saved != w.saved.rend(); ++saved) {
-        spheres_.events[saved->sphere] = saved->event;
+        spheres_.partners[saved->sphere] = saved->partner;
         spheres_.bodies[saved->sphere] = saved->body;
       }
   }
@@ -417,7 +420,7 @@ private:
   void sort_by_place() {
     std::vector<std::pair<std::size_t, ParticleIndex>> places(size());
     for (ParticleIndex i = 0; i < size(); ++i) {
-      Vec3 centre = spheres_.bodies[i].centre;
+      Vec3 centre = spheres_.bodies[i].origin;
       if (periodic_)
         for (int k = 0; k < 3; ++k)
           centre[k] -= std::floor(centre[k]);
@@ -439,7 +442,7 @@ private:
   double listed_skin_ = never; ///< skin at the last rebuild
   double window_ = 1;          ///< length of a window
   std::uint64_t repeated_ = 0;
-  int trouble_ = 0, windows_alone_ = 0; ///< see note_trouble()
+  int trouble_ = 0, windows_alone_ = 0, pause_ = 512; ///< see note_trouble()
   bool stuck_ = false;
   bool periodic_;
 };

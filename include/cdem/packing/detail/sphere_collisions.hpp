@@ -29,8 +29,7 @@ struct Zone {
 struct Worker {
   /// What has to be put back if the window is to be done again.
   struct Saved {
-    ParticleIndex sphere;
-    Event event;
+    ParticleIndex sphere, partner;
     Body body;
   };
   /// Alone: every event in the order of time. First: events whose surroundings are in the zone, the others are put
@@ -66,8 +65,14 @@ public:
   static constexpr bool is_sphere(ParticleIndex partner) { return partner < first_wall; }
 
   SphereCollisions(std::size_t spheres, bool periodic)
-      : bodies(spheres), events(spheres), neighbours(spheres, periodic),
+      : bodies(spheres), partners(spheres, second_look), neighbours(spheres, periodic),
         near_walls_(periodic ? 0 : spheres, 0), periodic_(periodic) {}
+
+  Event event_of(ParticleIndex i) const { return {bodies[i].next, partners[i]}; }
+  void set_event(ParticleIndex i, const Event& event) {
+    bodies[i].next = event.time;
+    partners[i] = event.partner;
+  }
 
   double scale_at(double time) const { return scale + growth * time; }
 
@@ -75,16 +80,16 @@ public:
   /// appointment of either.
   void handle(Worker& w, const Appointment& appointment) {
     const ParticleIndex i = appointment.sphere;
-    if (events[i].time != appointment.time)
+    if (bodies[i].next != appointment.time)
       return;
     w.now = std::max(w.now, appointment.time);
     if (w.turn == Worker::Turn::first && !may_be_first(w, i))
       return put_off(w, appointment);
-    ParticleIndex partner = events[i].partner;
+    ParticleIndex partner = partners[i];
     if (is_sphere(partner)) {
       if (w.turn != Worker::Turn::alone && !w.zone.holds(partner)) // a former neighbour
         return w.turn == Worker::Turn::first ? put_off(w, appointment) : void(w.conflict = true);
-      if (events[partner].time != appointment.time || events[partner].partner != i) {
+      if (bodies[partner].next != appointment.time || partners[partner] != i) {
         if (w.turn == Worker::Turn::first)
           touched[partner] = w.now;
         partner = second_look;
@@ -94,11 +99,9 @@ public:
     if (w.turn != Worker::Turn::alone && !prepare(w, i, partner))
       return;
     ++w.sums.events;
-    bodies[i].advance(w.now);
-    events[i] = {};
+    set_event(i, {});
     if (is_sphere(partner)) {
-      bodies[partner].advance(w.now);
-      events[partner] = {};
+      set_event(partner, {});
       collide(w, bodies[i], bodies[partner]);
       predict(w, i);
       predict(w, partner);
@@ -113,8 +116,7 @@ public:
 
   /// Gives a sphere a new list of neighbours, and a new event.
   void renew(Worker& w, ParticleIndex i) {
-    bodies[i].advance(w.now);
-    events[i] = {};
+    set_event(i, {});
     neighbours.renew(i, new_shell(i, w.now));
     predict(w, i);
   }
@@ -124,13 +126,17 @@ public:
     return find_next(i, now, times);
   }
 
-  /// The room in which a sphere at time `now` may move; its centre is brought back into the cube.
+  /// The room in which a sphere may move from `now` on; its centre is brought back into the cube.
   Shell new_shell(ParticleIndex i, double now) {
     Body& body = bodies[i];
+    Vec3 centre = body.centre_at(now);
     if (periodic_)
-      for (int k = 0; k < 3; ++k)
-        body.centre[k] -= std::floor(body.centre[k]);
-    const Shell shell{body.centre, body.size * scale_at(now) + skin};
+      for (int k = 0; k < 3; ++k) {
+        const double periods = std::floor(centre[k]);
+        centre[k] -= periods;
+        body.origin[k] -= periods;
+      }
+    const Shell shell{centre, body.size * scale_at(now) + skin};
     if (!periodic_)
       note_walls(i, shell);
     return shell;
@@ -149,18 +155,18 @@ public:
   void fetch_ahead(const std::vector<Appointment>& appointments, std::size_t k) const {
     if (k + 24 < appointments.size()) {
       const ParticleIndex i = appointments[k + 24].sphere;
-      __builtin_prefetch(&events[i], 1);
+      __builtin_prefetch(&partners[i], 1);
       __builtin_prefetch(&bodies[i], 1);
       neighbours.fetch(i);
     }
     if (k + 16 < appointments.size()) {
       const ParticleIndex i = appointments[k + 16].sphere;
       neighbours.fetch_long(i);
-      if (const ParticleIndex j = events[i].partner; is_sphere(j) && j > i)
+      if (const ParticleIndex j = partners[i]; is_sphere(j) && j > i)
         neighbours.fetch(j);
     }
     if (k + 10 < appointments.size()) {
-      const ParticleIndex i = appointments[k + 10].sphere, j = events[i].partner;
+      const ParticleIndex i = appointments[k + 10].sphere, j = partners[i];
       if (!is_sphere(j) || j > i) { // else the partner's appointment does it
         fetch_surroundings(i);
         if (is_sphere(j))
@@ -168,14 +174,14 @@ public:
       }
     }
     if (k + 6 < appointments.size()) {
-      const ParticleIndex i = appointments[k + 6].sphere, j = events[i].partner;
+      const ParticleIndex i = appointments[k + 6].sphere, j = partners[i];
       if (is_sphere(j) && j > i)
         fetch_surroundings(j);
     }
   }
 
   SphereArray<Body> bodies;
-  SphereArray<Event> events;
+  SphereArray<ParticleIndex> partners; ///< of the next events
   NearNeighbours neighbours;
   EventCalendar calendar;
   double scale = 0, growth = 0; ///< mean diameter at time 0, and its rate
@@ -187,10 +193,8 @@ public:
 
 private:
   void fetch_surroundings(ParticleIndex i) const {
-    for (const ParticleIndex j : neighbours.of(i)) {
-      __builtin_prefetch(&bodies[j]);
-      __builtin_prefetch(&events[j], 1);
-    }
+    for (const ParticleIndex j : neighbours.of(i))
+      __builtin_prefetch(&bodies[j], 1);
   }
 
   /// Whether all that an event of the sphere reads and writes is in the zone and waits for nothing.
@@ -236,22 +240,22 @@ private:
   }
 
   void save(Worker& w, ParticleIndex i) {
-    w.saved.push_back({i, events[i], bodies[i]});
+    w.saved.push_back({i, partners[i], bodies[i]});
     if (w.turn == Worker::Turn::first)
       touched[i] = w.now;
   }
 
   /// Two spheres of equal mass: the relative normal velocity v_n becomes 2 G - v_n.
   void collide(Worker& w, Body& a, Body& b) const {
-    Vec3 normal = b.centre - a.centre;
+    Vec3 normal = b.centre_at(w.now) - a.centre_at(w.now);
     if (periodic_)
       normal = nearest_image(normal);
     normal /= std::sqrt(normal.squaredNorm());
     const double size = a.size + b.size;
     const double parting = size * growth;
     const double momentum = std::max(parting - normal.dot(b.velocity - a.velocity), 0.0);
-    a.velocity -= momentum * normal;
-    b.velocity += momentum * normal;
+    a.push(-momentum * normal, w.now);
+    b.push(momentum * normal, w.now);
     account(w, momentum, size, parting);
   }
 
@@ -260,7 +264,9 @@ private:
     const double inward = wall % 2 == 0 ? 1 : -1;
     const double parting = body.size * growth;
     const double momentum = std::max(2 * (parting - inward * body.velocity[axis]), 0.0);
-    body.velocity[axis] += inward * momentum;
+    Vec3 change = Vec3::Zero();
+    change[axis] = inward * momentum;
+    body.push(change, w.now);
     account(w, momentum, body.size, parting);
   }
 
@@ -274,23 +280,24 @@ private:
 
   Event find_next(ParticleIndex i, double now, std::vector<double>& times) const {
     const Body& a = bodies[i];
-    Event best = events[i];
+    const Vec3 centre = a.centre_at(now);
+    Event best = event_of(i);
     const std::span<const ParticleIndex> list = neighbours.of(i);
     if (times.size() < list.size() + 4)
       times.resize(2 * list.size() + 16);
     const Present present{now, scale_at(now), growth, periodic_};
     if (!list.empty()) {
-      const Soonest soonest = contact_times(bodies.data(), events.data(), list, a, present, times.data());
+      const Soonest soonest = contact_times(bodies.data(), list, a, centre, present, times.data());
       if (now + soonest.time < best.time)
         best = {now + soonest.time, list[soonest.place]};
     }
     if (!periodic_ && near_walls_[i])
       for (ParticleIndex wall = 0; wall < 6; ++wall)
         if (near_walls_[i] >> wall & 1)
-          if (const double time = now + time_to_wall(a, wall, present.scale); time < best.time)
+          if (const double time = now + time_to_wall(a, centre, wall, present.scale); time < best.time)
             best = {time, first_wall + wall};
     const Shell& shell = neighbours.shell(i);
-    const Vec3 y = a.centre - shell.centre;
+    const Vec3 y = centre - shell.centre;
     const double room = shell.radius - a.size * present.scale;
     const double shrinking = a.size * growth;
     if (!stays_inside(y, a.velocity, room, shrinking, best.time - now))
@@ -308,7 +315,7 @@ private:
         if (w.now + w.times[k] <= next.time) // whose events were weighed
           touched[list[k]] = w.now;
     }
-    if (!(next.time < events[i].time))
+    if (!(next.time < bodies[i].next))
       return;
     schedule(w, i, next);
     if (is_sphere(next.partner)) {
@@ -319,7 +326,7 @@ private:
   }
 
   void schedule(Worker& w, ParticleIndex i, const Event& event) {
-    events[i] = event;
+    set_event(i, event);
     if (event.time < w.end) {
       w.sudden.push_back({event.time, i});
       std::push_heap(w.sudden.begin(), w.sudden.end(), later);
@@ -337,9 +344,9 @@ private:
     return left > 0 && (y + v * time).squaredNorm() < left * left;
   }
 
-  double time_to_wall(const Body& body, ParticleIndex wall, double scale_now) const {
+  double time_to_wall(const Body& body, const Vec3& centre, ParticleIndex wall, double scale_now) const {
     const int axis = static_cast<int>(wall / 2);
-    const double distance = wall % 2 == 0 ? body.centre[axis] : 1 - body.centre[axis];
+    const double distance = wall % 2 == 0 ? centre[axis] : 1 - centre[axis];
     const double speed = wall % 2 == 0 ? body.velocity[axis] : -body.velocity[axis];
     const double approach = body.size * growth - speed;
     return approach > 0 ? std::max(distance - body.size * scale_now, 0.0) / approach : never;

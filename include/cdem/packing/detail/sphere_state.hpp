@@ -19,25 +19,28 @@ namespace cdem::packing::detail {
 
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
-/// What predictions read of a sphere: one cache line.
-struct alignas(64) Body {
-  Vec3 centre;     ///< at its local time
-  double time = 0; ///< its local time: that of its last own event
-  Vec3 velocity;
-  double size = 0; ///< radius at scale 1
-
-  Vec3 centre_at(double now) const { return centre + velocity * (now - time); }
-  void advance(double now) {
-    centre += velocity * (now - time);
-    time = now;
-  }
-};
-
 /// A sphere's next event. One with a sphere holds if that sphere's next event is the same; otherwise the sphere looks
 /// again when the time has come.
 struct Event {
   double time = never;
-  ParticleIndex partner = 0xffffffffU; ///< a sphere, or one of the numbers in GrowingSpheres
+  ParticleIndex partner = 0xffffffffU; ///< a sphere, or one of the numbers in SphereCollisions
+};
+
+/// What predictions read of a sphere: one cache line.
+///
+/// The centre is where the sphere would have been at time 0 on its present path, so that no local time is needed.
+struct alignas(64) Body {
+  Vec3 origin;         ///< centre at time 0
+  double next = never; ///< time of its next event
+  Vec3 velocity;
+  double size = 0; ///< radius at scale 1
+
+  Vec3 centre_at(double now) const { return origin + velocity * now; }
+  /// Changes the velocity, the centre at `now` staying where it is.
+  void push(const Vec3& change, double now) {
+    velocity += change;
+    origin -= change * now;
+  }
 };
 
 /// Allocates large arrays in pages of 2 MB where Linux has them: they are read at random, and a page table of 4 kB
