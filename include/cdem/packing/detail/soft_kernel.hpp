@@ -91,7 +91,7 @@ template <bool periodic>
       }
       const Lanes square = dx * dx + dy * dy + dz * dz;
       Lanes push = one - square / (reach * reach);
-      push = (push > zero) & (square > zero) ? push : zero;
+      push = ((push > zero) & (square > zero)) ? push : zero;
       fx += push * dx;
       fy += push * dy;
       fz += push * dz;
