@@ -73,8 +73,7 @@ public:
     bool found = false;    ///< whether the wanted state was reached
     bool balanced = false; ///< whether the forces balance within `tolerance`
     double density = 0;    ///< spheres' volume (overlaps counted twice) over the cube's
-    /// Where the overlaps vanish, extrapolated from the last state at the jamming point (or above, if a density or
-    /// contact number stopped the run there).
+    /// Where the overlaps vanish, extrapolated from the states of least overlap.
     double jamming_density = 0;
     double contact_number = 0;   ///< mean number of contacts of the spheres that are held; walls count
     std::uint32_t rattlers = 0;  ///< spheres with fewer than four contacts, taken out again and again
@@ -194,7 +193,10 @@ inline void SoftSpheres::draw_sizes() {
     size /= 2 * mean;
   size_volume_ = detail::volume_of_spheres(sizes_);
 
-  const double density = std::max(parameters_.density, 0.7); // compressed, on the way
+  if (!periodic_ && parameters_.target != Target::density)
+    return;
+  const double density =
+      periodic_ ? std::max(parameters_.density, 0.7) : parameters_.density; // 0.7 on the way
   const double diameter = 2 * *std::max_element(sizes_.begin(), sizes_.end()) * scale_at(density);
   const double limit = periodic_ ? 0.45 : 1;
   core::expect(diameter < limit, "number of particles", parameters_.particles,
@@ -325,15 +327,19 @@ private:
     }
   }
 
-  /// In a state near jamming the overlaps are in proportion to the density above it: compressed by a third of itself
-  /// in radius, a sphere's contacts overlap by the same part.
+  /// Near jamming the overlaps are in proportion to the excess density: a line through the two states of least overlap,
+  /// or through one with the slope of an affine swelling.
   void note_jamming_density() {
     states_.push_back({system_.overlap(), density()});
-    const std::size_t n = states_.size();
-    report_.jamming_density = states_[n - 1].density;
-    if (n > 1 && states_[n - 2].overlap > states_[n - 1].overlap)
-      report_.jamming_density -= states_[n - 1].overlap * (states_[n - 2].density - states_[n - 1].density) /
-                                 (states_[n - 2].overlap - states_[n - 1].overlap);
+    std::sort(states_.begin(), states_.end(),
+              [](const State& a, const State& b) { return a.overlap < b.overlap; });
+    const State least = states_.front();
+    const auto next = std::find_if(states_.begin(), states_.end(),
+                                   [&](const State& state) { return state.overlap > 1.1 * least.overlap; });
+    const double slope = next == states_.end()
+                             ? 3 * least.density
+                             : (next->density - least.density) / (next->overlap - least.overlap);
+    report_.jamming_density = least.density - slope * least.overlap;
   }
 
   void report_progress() {

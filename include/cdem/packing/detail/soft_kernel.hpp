@@ -91,7 +91,7 @@ template <bool periodic>
       }
       const Lanes square = dx * dx + dy * dy + dz * dz;
       Lanes push = one - square / (reach * reach);
-      push = (push > zero) & (square > zero) ? push : zero;
+      push = ((push > zero) & (square > zero)) ? push : zero;
       fx += push * dx;
       fy += push * dy;
       fz += push * dz;
@@ -127,9 +127,9 @@ template <bool periodic>
   __builtin_memcpy(sums.velocity.component, &velocities, sizeof velocities);
 }
 
-/// What a step of the descent does: x += back v, then v = keep v + push F, then x += step v.
+/// What a step of the descent does: v = keep v + push F, then x += step v.
 struct SoftStep {
-  double back, keep, push, step;
+  double keep, push, step;
 };
 
 /// Moves the spheres [begin, end). Those that touch nothing stop.
@@ -145,9 +145,8 @@ struct SoftStep {
     __builtin_memcpy(&v, &velocity[i], sizeof v);
     __builtin_memcpy(&x, &spheres[i], sizeof x);
     v = __builtin_shufflevector(f, f, 3, 3, 3, 3) > zero ? v : zero;
-    Lanes shift = step.back * v;
     v = step.keep * v + push * f;
-    shift += step.step * v;
+    Lanes shift = step.step * v;
     x += shift;
     shift *= shift;
     farthest = shift > farthest ? shift : farthest;

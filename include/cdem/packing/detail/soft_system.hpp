@@ -101,12 +101,11 @@ public:
     const double swell = goal_ > 0 ? swelling_unit() * (goal_ - overlap()) / unit : 0; // the force along it
     const double power = sum_of(sums_.power) + swell * swelling_;
     const double squares = sum_of(sums_.squares) + swell * swell;
-    SoftStep step{0, 1, 0, step_};
+    SoftStep step{1, 0, step_};
     if (power > 0) {
       if (++downhill_ > 5)
         mixing_ = std::max(mixing_ * 0.98, 0.02);
     } else {
-      step.back = -0.5 * step_;
       step.keep = 0;
       downhill_ = 0;
       mixing_ = 0.1;
@@ -115,12 +114,11 @@ public:
         std::sqrt(step.keep * (sum_of(sums_.velocity) + swelling_ * swelling_ + 2 * step_ * power) +
                   step_ * step_ * squares);
     step.push = (1 - mixing_) * step_ + (squares > 0 ? mixing_ * speed / std::sqrt(squares) : 0);
+    step.push = std::min(step.push, 2 * step_); // what the stiffest springs bear
     step.keep *= 1 - mixing_;
     if (goal_ > 0) {
-      double shift = step.back * swelling_;
       swelling_ = step.keep * swelling_ + step.push * swell;
-      shift += step.step * swelling_;
-      scale_ *= std::exp(std::clamp(shift / unit, -0.01, 0.01));
+      scale_ *= std::exp(std::clamp(step.step * swelling_ / unit, -0.01, 0.01));
     }
     farthest_.resize(lists_.blocks());
     pool_.for_each_block(lists_.blocks(), [&](std::size_t b) {
