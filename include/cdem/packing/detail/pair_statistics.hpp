@@ -4,7 +4,7 @@
 /// One pass over all near pairs of a packing: distances, gaps, contacts.
 
 #include <cdem/core/parallel.hpp>
-#include <cdem/packing/detail/sorted_cells.hpp>
+#include <cdem/packing/detail/pair_cells.hpp>
 
 #include <algorithm>
 #include <array>
@@ -47,7 +47,7 @@ inline constexpr std::size_t quality_blocks = 64;
 /// @complexity O(pairs within reach), shared by the threads
 inline PairStatistics count_pairs(const particles::ParticleSet& spheres, const geometry::Box& box,
                                   double reach, const PairCounts& counts, core::ThreadPool& pool) {
-  const SortedCells cells(spheres, box, reach);
+  const PairCells cells(spheres, box, reach);
   std::vector<double> radius(spheres.size());
   for (std::size_t i = 0; i < radius.size(); ++i)
     radius[i] = spheres.radius[cells.number(i)];

@@ -18,10 +18,10 @@ namespace cdem::packing::detail {
 
 /// The spheres cell by cell, cells along x contiguous: the neighbours of a sphere are a few runs of consecutive numbers,
 /// whose distances are computed in vector registers.
-class SortedCells {
+class PairCells {
 public:
   /// @param reach  m; largest distance of the pairs visited, at most half of every periodic edge
-  SortedCells(const particles::ParticleSet& spheres, const geometry::Box& box, double reach)
+  PairCells(const particles::ParticleSet& spheres, const geometry::Box& box, double reach)
       : reach_(reach), size_(box.size()) {
     const double spacing = std::cbrt(box.volume() / static_cast<double>(spheres.size()));
     for (int k = 0; k < 3; ++k) {
