@@ -72,8 +72,15 @@ struct PackingOptions {
     app.add_flag("!--no-cache", keep, "Keep no packing, use none that was kept");
   }
 
-  /// What they come to, given the folder of the results.
+  /// What they come to, given the folder of the results. A packing given is read once to see that it can be.
+  /// @throws core::InvalidInput if it cannot: a bad value like any other
   PackingSource source(const std::filesystem::path& out) const {
+    try {
+      if (!file.empty())
+        io::FromFile({.file = file}).pack();
+    } catch (const core::FileError& error) {
+      throw core::InvalidInput(error.what());
+    }
     if (!keep)
       return {file, {}};
     const std::filesystem::path results = (out / "").lexically_normal().parent_path();

@@ -124,6 +124,17 @@ inline Made pack(double cov, std::uint32_t particles, const Params& params, cons
                                                  monitor);
 }
 
+inline Made pack_or_say_how_to_go_on(double cov, std::uint32_t particles, const Params& params,
+                                     const core::Monitor& monitor) {
+  try {
+    return pack(cov, particles, params, monitor);
+  } catch (const core::Interrupted& interrupted) {
+    throw core::Interrupted(
+        std::string(interrupted.what()) +
+        (params.source.cache.empty() ? "" : "; the same command goes on with this packing"));
+  }
+}
+
 } // namespace detail
 
 /// Packs, or loads, each case in turn and looks at it.
@@ -143,7 +154,7 @@ inline Result run(const Params& params, const core::Monitor& monitor = {}) {
       const core::Monitor shown([&](const core::Progress& progress) {
         monitor.report({stage, progress.fraction, progress.detail});
       });
-      const detail::Made made = detail::pack(cov, particles, params, shown);
+      const detail::Made made = detail::pack_or_say_how_to_go_on(cov, particles, params, shown);
       one.quality =
           packing::quality(made.particles, made.box,
                            {.coordination = params.coordination, .reduced_pressure = made.pressure}, pool);

@@ -4,6 +4,7 @@
 /// What VTK's files are packed in: base64 (RFC 4648), and zlib's format (RFC 1950, 1951). Decoding alone, on strings in
 /// memory, so that the headers need no library for it.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>

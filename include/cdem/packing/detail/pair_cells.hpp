@@ -34,6 +34,7 @@ public:
       stencil_[axis] = static_cast<int>(std::ceil(reach / edge_[k]));
       if (cells_[axis] <
           2 * stencil_[axis] + 1) { // images in one another's cells: one cell, and the nearest image
+        folded_ = folded_ || periodic_[axis];
         cells_[axis] = 1;
         stencil_[axis] = 0;
         edge_[k] = size_[k];
@@ -60,11 +61,12 @@ public:
         for (int dy = dz == 0 ? 0 : -stencil_[1]; dy <= stencil_[1]; ++dy) {
           const double rest = reach_ * reach_ - square(gap(dy, 1)) - square(gap(dz, 2));
           int other_y = y + dy, other_z = z + dz;
-          if (rest < 0 || !inside(other_y, 1) || !inside(other_z, 2))
+          Vec3 shift = Vec3::Zero(); // of the spheres of the other row
+          if (rest < 0 || !inside(other_y, 1, shift) || !inside(other_z, 2, shift))
             continue;
           const int far = std::min(stencil_[0], static_cast<int>(std::sqrt(rest) / edge_[0]) + 1);
           visit_rows(row, static_cast<std::size_t>(other_z * cells_[1] + other_y), far, dy == 0 && dz == 0,
-                     visit);
+                     shift, visit);
         }
     }
   }
@@ -73,63 +75,74 @@ private:
   static double square(double x) { return x * x; }
   /// Least distance along an axis of points whose cells are `d` apart.
   double gap(int d, int axis) const { return std::max(0, std::abs(d) - 1) * edge_[axis]; }
-  /// Brings a cell's number into the box; false beyond a wall.
-  bool inside(int& cell, std::size_t axis) const {
-    const bool outside = cell < 0 || cell >= cells_[axis];
-    if (outside)
-      cell += cell < 0 ? cells_[axis] : -cells_[axis];
-    return !outside || periodic_[axis];
+  /// Brings a cell's number into the box, adding to the shift what brings its spheres back; false beyond a wall.
+  bool inside(int& cell, int axis, Vec3& shift) const {
+    const auto a = static_cast<std::size_t>(axis);
+    if (cell >= 0 && cell < cells_[a])
+      return true;
+    shift[axis] += cell < 0 ? -size_[axis] : size_[axis];
+    cell += cell < 0 ? cells_[a] : -cells_[a];
+    return periodic_[a];
   }
 
   /// Pairs between two rows of cells, or within one.
   template <class Visit>
-  void visit_rows(std::size_t row, std::size_t other, int far, bool same, Visit& visit) const {
+  void visit_rows(std::size_t row, std::size_t other, int far, bool same, const Vec3& shift,
+                  Visit& visit) const {
     const auto first = [&](std::size_t r, int cell) {
       return start_[r * static_cast<std::size_t>(cells_[0]) + static_cast<std::size_t>(cell)];
     };
+    const Vec3 edge(size_[0], 0, 0);
     for (int x = 0; x < cells_[0]; ++x) {
       const int low = same ? x : x - far, high = x + far + 1; // cells [low, high) of the other row
       for (ParticleIndex i = first(row, x); i < first(row, x + 1); ++i) {
-        const auto run = [&](int from, int to) {
-          visit_run(i, std::max(first(other, from), same && from == x ? i + 1 : 0), first(other, to), visit);
+        const Vec3 centre = Vec3(coordinate_[0][i], coordinate_[1][i], coordinate_[2][i]) - shift;
+        const auto run = [&](int from, int to, const Vec3& seen_from) {
+          const ParticleIndex begin = std::max(first(other, from), same && from == x ? i + 1 : 0);
+          if (folded_)
+            visit_run<true>(i, seen_from, begin, first(other, to), visit);
+          else
+            visit_run<false>(i, seen_from, begin, first(other, to), visit);
         };
-        run(std::max(low, 0), std::min(high, cells_[0]));
+        run(std::max(low, 0), std::min(high, cells_[0]), centre);
         if (!periodic_[0])
           continue;
         if (low < 0)
-          run(low + cells_[0], cells_[0]);
+          run(low + cells_[0], cells_[0], centre + edge);
         if (high > cells_[0])
-          run(0, high - cells_[0]);
+          run(0, high - cells_[0], centre - edge);
       }
     }
   }
 
-  template <class Visit>
-  void visit_run(ParticleIndex i, ParticleIndex begin, ParticleIndex end, Visit& visit) const {
+  /// Sphere i, seen from `centre`, with each of a run.
+  template <bool Folded, class Visit>
+  void visit_run(ParticleIndex i, const Vec3& centre, ParticleIndex begin, ParticleIndex end,
+                 Visit& visit) const {
     constexpr ParticleIndex most = 64;
     std::array<double, most> squared;
-    const double x = coordinate_[0][i], y = coordinate_[1][i], z = coordinate_[2][i];
+    std::array<ParticleIndex, most> near;
+    const double x = centre[0], y = centre[1], z = centre[2], reach = reach_ * reach_;
     for (; begin < end; begin += most) {
       const ParticleIndex count = std::min(most, end - begin);
       const double* px = coordinate_[0].data() + begin;
       const double* py = coordinate_[1].data() + begin;
       const double* pz = coordinate_[2].data() + begin;
+      ParticleIndex found = 0; // chosen without a branch, which would be guessed wrong half the time
       for (ParticleIndex k = 0; k < count; ++k) {
         double dx = px[k] - x, dy = py[k] - y, dz = pz[k] - z;
-        dx -= size_[0] * nearest_integer(dx * inverse_[0]);
-        dy -= size_[1] * nearest_integer(dy * inverse_[1]);
-        dz -= size_[2] * nearest_integer(dz * inverse_[2]);
-        squared[k] = dx * dx + dy * dy + dz * dz;
-      }
-      std::array<ParticleIndex, most>
-          near; // chosen without a branch, which would be guessed wrong half the time
-      ParticleIndex found = 0;
-      for (ParticleIndex k = 0; k < count; ++k) {
-        near[found] = k;
-        found += squared[k] <= reach_ * reach_ ? 1U : 0U;
+        if constexpr (Folded) {
+          dx -= size_[0] * nearest_integer(dx * inverse_[0]);
+          dy -= size_[1] * nearest_integer(dy * inverse_[1]);
+          dz -= size_[2] * nearest_integer(dz * inverse_[2]);
+        }
+        const double square = dx * dx + dy * dy + dz * dz;
+        squared[found] = square;
+        near[found] = begin + k;
+        found += square <= reach ? 1U : 0U;
       }
       for (ParticleIndex f = 0; f < found; ++f)
-        visit(i, begin + near[f], squared[near[f]]);
+        visit(i, near[f], squared[f]);
     }
   }
 
@@ -165,6 +178,7 @@ private:
   double reach_;
   Vec3 size_, inverse_, edge_;
   std::array<bool, 3> periodic_{};
+  bool folded_ = false; ///< a periodic axis has one cell: nearest images are sought pair by pair
   std::array<int, 3> cells_{}, stencil_{};
   std::vector<ParticleIndex> start_;  ///< [cells + 1] first sphere of each cell
   std::vector<ParticleIndex> number_; ///< [spheres] of each in the set given
