@@ -38,7 +38,7 @@ public:
         1e-8; ///< wanted: residual over that of the prescribed motion with all else at rest
     int max_iterations = 1000;
     int group_size = 20;     ///< particles to a group, 2 to 1000
-    int smoothing_steps = 3; ///< Chebyshev steps before and after each coarse correction, 1 to 16
+    int smoothing_steps = 2; ///< on the particles before and after each coarse correction, 1 to 16
   };
 
   /// One level of the hierarchy, the particles first.

@@ -1,13 +1,12 @@
 #pragma once
 
 /// @file
-/// The cycle of the static multigrid: Chebyshev smoothing, restriction and prolongation by rigid motions, inner
+/// The cycle of the static multigrid: polynomial smoothing, restriction and prolongation by rigid motions, inner
 /// conjugate gradients.
 
 #include <cdem/integrate/detail/multigrid_hierarchy.hpp>
+#include <cdem/integrate/detail/multigrid_smoother.hpp>
 
-#include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace cdem::integrate::detail {
@@ -21,24 +20,6 @@ inline Twist free_part(Twist x, HeldMask held) {
       x.angular[d] = 0;
   }
   return x;
-}
-
-/// Gain of step j = 0, ..., steps - 1 of the smoother x := x + gain D^-1 (b - K x).
-///
-/// The steps multiply an error of eigenvalue s (of D^-1 K, in units of its largest) by the polynomial p of that degree
-/// with p(0) = 1 that makes the V-cycle's bound sup s p^2 / (1 - p^2) least; the gains are the inverses of its roots. It is
-/// p(s) = +-T_2n+1(y) / sqrt(1 + c s) with y^2 = (1 + c s) / (1 + c), 1 / sqrt(1 + c) = cos(n pi / (2n + 1)): T is odd,
-/// and one where p is to be one.
-/// Lottes, Optimal polynomial smoothers for multigrid V-cycles, Numer. Linear Algebra Appl. 30 (2023) e2518, gives it as a
-/// weighted Chebyshev iteration of the fourth kind.
-inline float smoothing_gain(int j, int steps) {
-  // D^-1 K of links, D its 6x6 diagonal blocks, has no eigenvalue above 2: |a - b|^2 <= 2 |a|^2 + 2 |b|^2 in the
-  // energy of each link.
-  constexpr double largest_eigenvalue = 2;
-  const double end = std::cos(steps * std::numbers::pi / (2 * steps + 1));
-  const double y = std::cos((2 * j + 1) * std::numbers::pi / (4 * steps + 2));
-  const double root = (y * y - end * end) / (1 - end * end);
-  return static_cast<float>(1 / (root * largest_eigenvalue));
 }
 
 /// A block's lines of the level's fields, for relax().
@@ -119,7 +100,7 @@ void add_group_motion(Level<Links>& level, const Field& group_x, core::ThreadPoo
 
 /// What the cycle may be told.
 struct CycleParameters {
-  int smoothing_steps = 3;       ///< Chebyshev steps before and after the coarse correction
+  int smoothing_steps = 2;       ///< steps before and after the coarse correction
   int group_smoothing_steps = 1; ///< the same on the levels of groups
   double inner_tolerance =
       0.25; ///< an inner iteration that cut the residual so far is not followed by a second
