@@ -25,12 +25,6 @@
 
 namespace cdem::packing {
 
-/// What bounds the cube that is packed.
-enum class Boundary : std::uint8_t {
-  periodic, ///< the opposite face follows
-  walls     ///< six flat, hard walls
-};
-
 /// Why the growth of a packing ended.
 enum class StopReason : std::uint8_t {
   density_reached, ///< the density asked for
