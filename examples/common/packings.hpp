@@ -2,10 +2,12 @@
 
 // Where an example's packing comes from: a file given, the cache of those made before, or the generator.
 
+#include <cdem/core/parallel.hpp>
 #include <cdem/io/csv.hpp>
 #include <cdem/io/from_file.hpp>
 #include <cdem/io/output_directory.hpp>
 #include <cdem/packing/lubachevsky_stillinger.hpp>
+#include <cdem/packing/soft_spheres.hpp>
 
 #include <charconv>
 #include <cstdio>
@@ -30,7 +32,7 @@ template <>
 struct GeneratorTraits<packing::LubachevskyStillinger> {
   using Generator = packing::LubachevskyStillinger;
   static constexpr const char* name = "lubachevsky_stillinger";
-  static constexpr int generation = 1;
+  static constexpr int generation = 2;
 
   /// Names every parameter that the packing depends on.
   template <class Visit>
@@ -42,6 +44,8 @@ struct GeneratorTraits<packing::LubachevskyStillinger> {
     visit("smallest_radius", p.smallest_radius);
     visit("growth_rate", p.growth_rate);
     visit("fluid_growth_rate", p.fluid_growth_rate);
+    visit("late_growth_rate", p.late_growth_rate);
+    visit("late_pressure", p.late_pressure);
     visit("pressure_limit", p.pressure_limit);
     visit("side", p.side);
     visit("boundary", p.boundary == packing::Boundary::periodic ? "periodic" : "walls");
@@ -72,6 +76,60 @@ struct GeneratorTraits<packing::LubachevskyStillinger> {
            core::to_text(p.cov) + "-growth" + core::to_text(p.growth_rate) +
            (p.boundary == packing::Boundary::periodic ? "-periodic" : "-walls") + "-seed" +
            std::to_string(p.seed);
+  }
+};
+
+template <>
+struct GeneratorTraits<packing::SoftSpheres> {
+  using Generator = packing::SoftSpheres;
+  static constexpr const char* name = "soft_spheres";
+  static constexpr int generation = 1;
+
+  /// Names every parameter that the packing depends on; the number of threads is none.
+  template <class Visit>
+  static void visit_parameters(const Generator::Parameters& p, Visit&& visit) {
+    visit("particles", p.particles);
+    visit("target", p.target);
+    visit("density", p.density);
+    visit("contact_number", p.contact_number);
+    visit("cov", p.cov);
+    visit("truncation", p.truncation);
+    visit("smallest_radius", p.smallest_radius);
+    visit("compression", p.compression);
+    visit("jamming_overlap", p.jamming_overlap);
+    visit("tolerance", p.tolerance);
+    visit("most_evaluations", p.most_evaluations);
+    visit("side", p.side);
+    visit("boundary", p.boundary == packing::Boundary::periodic ? "periodic" : "walls");
+    visit("seed", p.seed);
+  }
+
+  /// Names what is kept of the report.
+  template <class Report, class Visit>
+  static void visit_report(Report& r, Visit&& visit) {
+    visit("target", r.target);
+    visit("wanted", r.wanted);
+    visit("found", r.found);
+    visit("balanced", r.balanced);
+    visit("density", r.density);
+    visit("jamming_density", r.jamming_density);
+    visit("contact_number", r.contact_number);
+    visit("rattlers", r.rattlers);
+    visit("residual", r.residual);
+    visit("largest_residual", r.largest_residual);
+    visit("pressure", r.pressure);
+    visit("mean_overlap", r.mean_overlap);
+    visit("largest_overlap", r.largest_overlap);
+    visit("evaluations", r.evaluations);
+    visit("wall_seconds", r.wall_seconds);
+    visit("mean_radius", r.mean_radius);
+    visit("cov", r.cov);
+  }
+
+  static std::string label(const Generator::Parameters& p) {
+    return std::to_string(p.particles) + "-density" + core::to_text(p.density) + "-cov" +
+           core::to_text(p.cov) + (p.boundary == packing::Boundary::periodic ? "-periodic" : "-walls") +
+           "-seed" + std::to_string(p.seed);
   }
 };
 
@@ -108,7 +166,9 @@ public:
     const auto found = values_.find(name);
     if (found == values_.end())
       return;
-    if constexpr (std::is_enum_v<Value>)
+    if constexpr (std::is_same_v<Value, bool>)
+      value = found->second == "1";
+    else if constexpr (std::is_enum_v<Value>)
       value = static_cast<Value>(io::detail::number_in<int>(found->second).value_or(0));
     else
       value = io::detail::number_in<Value>(found->second).value_or(value);
@@ -169,11 +229,12 @@ struct ObtainedPacking {
 /// The packing: read from the file given, else from the cache, else made and kept there. A file of the cache that is damaged
 /// or belongs to other parameters is named on stderr, and made anew.
 /// @param judge  called with the report of a packing that was made or kept; throws if it will not do, before it is kept
+/// @param pool   for a generator that takes one
 /// @throws core::FileError for a file given that cannot be read; what Generator and judge throw
 template <packing::PackingGenerator Generator, class Judge>
 ObtainedPacking<Generator> obtain_packing(const typename Generator::Parameters& parameters,
                                           const PackingSource& source, Judge&& judge,
-                                          const core::Monitor& monitor) {
+                                          const core::Monitor& monitor, core::ThreadPool* pool = nullptr) {
   using Traits = GeneratorTraits<Generator>;
   ObtainedPacking<Generator> obtained;
   if (!source.file.empty()) {
@@ -203,7 +264,11 @@ ObtainedPacking<Generator> obtain_packing(const typename Generator::Parameters& 
       return obtained;
     }
   }
-  obtained.packing = Generator(parameters).pack(monitor);
+  const Generator generator(parameters);
+  if constexpr (requires { generator.pack(*pool, monitor); })
+    obtained.packing = pool ? generator.pack(*pool, monitor) : generator.pack(monitor);
+  else
+    obtained.packing = generator.pack(monitor);
   judge(obtained.packing.report);
   if (!source.cache.empty()) {
     const io::OutputDirectory folder(source.cache);

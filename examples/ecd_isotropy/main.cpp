@@ -29,9 +29,10 @@ int main(int argc, char** argv) {
   app.add_option("--cov", params.covs, "CoVs of the Gaussian radii, separated by commas")
       ->delimiter(',')
       ->capture_default_str();
-  examples::add_choice<ecd::GeneratorKind>(app, "--generator", params.generator,
-                                           {{"lsa", ecd::GeneratorKind::lubachevsky_stillinger}},
-                                           "Who packs: lsa, the Lubachevsky-Stillinger algorithm");
+  examples::add_choice<ecd::GeneratorKind>(
+      app, "--generator", params.generator,
+      {{"lsa", ecd::GeneratorKind::lubachevsky_stillinger}, {"soft", ecd::GeneratorKind::soft_spheres}},
+      "Who packs: lsa, the Lubachevsky-Stillinger algorithm; soft, soft spheres in balance");
   app.add_option("--density", params.density, "Volume fraction of the packing")->capture_default_str();
   app.add_option("--growth", params.growth_rate, "Growth rate of the spheres: slower packs denser")
       ->capture_default_str();

@@ -16,7 +16,7 @@
 namespace cdem::examples::ecd_isotropy {
 
 /// Who makes the packings; one line here and one in pack() for each.
-enum class GeneratorKind : std::uint8_t { lubachevsky_stillinger };
+enum class GeneratorKind : std::uint8_t { lubachevsky_stillinger, soft_spheres };
 
 struct Params {
   std::vector<std::uint32_t> sizes = {10000, 20000, 50000, 100000}; ///< numbers of particles
@@ -40,6 +40,16 @@ struct Params {
             .seed = seed};
   }
 
+  packing::SoftSpheres::Parameters soft_spheres(double cov, std::uint32_t particles) const {
+    packing::SoftSpheres::Parameters p;
+    p.particles = particles;
+    p.density = density;
+    p.cov = cov;
+    p.seed = seed;
+    p.threads = threads;
+    return p;
+  }
+
   /// @throws core::InvalidInput for what no stage would accept, before anything is computed or written
   void validate() const {
     core::expect(!sizes.empty(), "number of sizes", sizes.size(), "1 or more is expected");
@@ -47,7 +57,10 @@ struct Params {
     core::expect_positive(coordination, "coordination");
     for (const double cov : covs)
       for (const std::uint32_t particles : sizes)
-        packing::LubachevskyStillinger{lubachevsky_stillinger(cov, particles)};
+        if (generator == GeneratorKind::soft_spheres)
+          packing::SoftSpheres{soft_spheres(cov, particles)};
+        else
+          packing::LubachevskyStillinger{lubachevsky_stillinger(cov, particles)};
   }
 };
 
@@ -99,35 +112,40 @@ struct Made {
 };
 
 template <class Generator>
-Made made_by(const typename Generator::Parameters& parameters, const Params& params,
+Made made_by(const typename Generator::Parameters& parameters, const Params& params, core::ThreadPool& pool,
              const core::Monitor& monitor) {
   // One that jams up to a tenth below the density asked for is of use all the same.
   const auto judge = [&](const typename Generator::Report& report) {
     if (report.density < 0.9 * params.density)
       report.require_reached();
   };
-  auto [packing, loaded, reported] = obtain_packing<Generator>(parameters, params.source, judge, monitor);
+  auto [packing, loaded, reported] =
+      obtain_packing<Generator>(parameters, params.source, judge, monitor, &pool);
   Made made{std::move(packing.particles), packing.box, {}, true, loaded, packing.report.wall_seconds};
   if (reported) {
-    made.pressure = packing.report.pressure;
+    if constexpr (std::is_same_v<Generator, packing::LubachevskyStillinger>)
+      made.pressure = packing.report.pressure; // the reduced one, of hard spheres
     made.reached = packing.report.reached();
   }
   return made;
 }
 
-inline Made pack(double cov, std::uint32_t particles, const Params& params, const core::Monitor& monitor) {
+inline Made pack(double cov, std::uint32_t particles, const Params& params, core::ThreadPool& pool,
+                 const core::Monitor& monitor) {
   switch (params.generator) {
+  case GeneratorKind::soft_spheres:
+    return made_by<packing::SoftSpheres>(params.soft_spheres(cov, particles), params, pool, monitor);
   case GeneratorKind::lubachevsky_stillinger:
     break;
   }
-  return made_by<packing::LubachevskyStillinger>(params.lubachevsky_stillinger(cov, particles), params,
+  return made_by<packing::LubachevskyStillinger>(params.lubachevsky_stillinger(cov, particles), params, pool,
                                                  monitor);
 }
 
 inline Made pack_or_say_how_to_go_on(double cov, std::uint32_t particles, const Params& params,
-                                     const core::Monitor& monitor) {
+                                     core::ThreadPool& pool, const core::Monitor& monitor) {
   try {
-    return pack(cov, particles, params, monitor);
+    return pack(cov, particles, params, pool, monitor);
   } catch (const core::Interrupted& interrupted) {
     throw core::Interrupted(
         std::string(interrupted.what()) +
@@ -154,7 +172,7 @@ inline Result run(const Params& params, const core::Monitor& monitor = {}) {
       const core::Monitor shown([&](const core::Progress& progress) {
         monitor.report({stage, progress.fraction, progress.detail});
       });
-      const detail::Made made = detail::pack_or_say_how_to_go_on(cov, particles, params, shown);
+      const detail::Made made = detail::pack_or_say_how_to_go_on(cov, particles, params, pool, shown);
       one.quality =
           packing::quality(made.particles, made.box,
                            {.coordination = params.coordination, .reduced_pressure = made.pressure}, pool);

@@ -204,8 +204,8 @@ inline void load(const std::filesystem::path& path, const std::string& identity,
 
 /// The packing; kept beside the checkpoints where there is no cache. One that jams up to a tenth below the density asked for
 /// is used all the same, and its report says so; any other is an error.
-inline ObtainedPacking<packing::LubachevskyStillinger> make_packing(const Params& params,
-                                                                    const core::Monitor& monitor) {
+inline ObtainedPacking<packing::LubachevskyStillinger>
+make_packing(const Params& params, core::ThreadPool& pool, const core::Monitor& monitor) {
   const auto judge = [&](const packing::LubachevskyStillinger::Report& report) {
     const bool usable = report.reason == packing::StopReason::pressure_limit &&
                         report.density >= 0.9 * params.packing.density;
@@ -214,7 +214,7 @@ inline ObtainedPacking<packing::LubachevskyStillinger> make_packing(const Params
   };
   const auto& cache = params.source.cache.empty() ? params.checkpoints : params.source.cache;
   return obtain_packing<packing::LubachevskyStillinger>(params.packing, {params.source.file, cache}, judge,
-                                                        monitor);
+                                                        monitor, &pool);
 }
 
 /// Everything that a run of one material depends on: a checkpoint with the same text belongs to the same run.
@@ -320,7 +320,7 @@ inline MaterialResult pull(const Material& material, const Params& params, const
 inline Result run(const Params& params, const core::Monitor& monitor = {}) {
   params.validate();
   core::ThreadPool pool(params.threads);
-  auto [packing, loaded, reported] = detail::make_packing(params, monitor);
+  auto [packing, loaded, reported] = detail::make_packing(params, pool, monitor);
   simulation::Specimen specimen =
       simulation::make_specimen(packing.particles, packing.box, params.coordination, pool);
   const boundary::SymmetricTension tension{params.axis, params.velocity, specimen.gap()};
