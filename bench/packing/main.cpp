@@ -92,8 +92,7 @@ public:
       move(meeting.j);
       Vec3 normal = image(centre_[meeting.j] - centre_[meeting.i]);
       normal.normalize();
-      const double momentum =
-          std::max(growth - normal.dot(velocity_[meeting.j] - velocity_[meeting.i]), 0.0);
+      const double momentum = std::max(growth - normal.dot(velocity_[meeting.j] - velocity_[meeting.i]), 0.0);
       velocity_[meeting.i] -= momentum * normal;
       velocity_[meeting.j] += momentum * normal;
       fastest_ = std::max({fastest_, velocity_[meeting.i].norm(), velocity_[meeting.j].norm()});
@@ -133,11 +132,12 @@ private:
     valid_until_ = now_ + room_ / fastest_;
     const double reach = diameter_ * 1.03 + 2 * room_;
     const auto cells = static_cast<int>(1 / reach);
-    std::vector<std::vector<std::uint32_t>> cell(static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells) *
-                                                 static_cast<std::size_t>(cells));
+    std::vector<std::vector<std::uint32_t>> cell(
+        static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells));
     const auto number = [&](int x, int y, int z) {
       const auto wrap = [&](int a) { return static_cast<std::size_t>((a + cells) % cells); };
-      return (wrap(z) * static_cast<std::size_t>(cells) + wrap(y)) * static_cast<std::size_t>(cells) + wrap(x);
+      return (wrap(z) * static_cast<std::size_t>(cells) + wrap(y)) * static_cast<std::size_t>(cells) +
+             wrap(x);
     };
     const auto at = [&](double x) { return std::min(static_cast<int>(x * cells), cells - 1); };
     for (std::uint32_t i = 0; i < centre_.size(); ++i) {
@@ -161,7 +161,8 @@ private:
     const Vec3 centre = centre_[i] + velocity_[i] * (now_ - time_[i]);
     const double sum = diameter_ + growth * now_;
     for (const std::uint32_t j : list_[i]) {
-      const Vec3 d = image(centre_[j] + velocity_[j] * (now_ - time_[j]) - centre), w = velocity_[j] - velocity_[i];
+      const Vec3 d = image(centre_[j] + velocity_[j] * (now_ - time_[j]) - centre),
+                 w = velocity_[j] - velocity_[i];
       const double a = w.squaredNorm() - growth * growth, b = d.dot(w) - sum * growth;
       const double c = d.squaredNorm() - sum * sum, discriminant = b * b - a * c;
       double time = std::numeric_limits<double>::infinity();
@@ -198,7 +199,12 @@ void raw_plain_loop(benchmark::State& state) {
 
 } // namespace
 
-BENCHMARK(raw_plain_loop)->Arg(10000)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(raw_plain_loop)
+    ->Arg(10000)
+    ->Arg(100000)
+    ->Arg(1000000)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 BENCHMARK(near_jamming)
     ->ArgsProduct({{10000, 100000, 1000000}, {1, 2}})
     ->Unit(benchmark::kMillisecond)
