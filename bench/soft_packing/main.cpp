@@ -1,9 +1,11 @@
 // Repulsion of soft spheres, nanoseconds in every sphere and evaluation of all forces: a hand-written loop over the same
 // pairs (each once, with the square root, forces scattered), beside the library's kernel (each pair twice, four at a
-// time, forces and the sums of the descent). Then whole packings: 10,000 and 100,000 spheres to the jamming point.
+// time, forces and the sums of the descent). Then whole packings: 10,000 and 100,000 spheres to the jamming point, and as
+// many as the environment variable CDEM_PACKING_SPHERES says (on two threads, with progress).
 
 #include <cdem/core/parallel.hpp>
 #include <cdem/core/random.hpp>
+#include <cdem/io/terminal_progress.hpp>
 #include <cdem/packing/detail/soft_system.hpp>
 #include <cdem/packing/soft_spheres.hpp>
 
@@ -13,6 +15,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <vector>
@@ -123,12 +126,15 @@ void library_step(benchmark::State& state) {
 
 void packing_to_jamming(benchmark::State& state) {
   packing::SoftSpheres::Report report;
+  io::TerminalProgress progress;
+  const core::Monitor monitor =
+      state.range(0) > 100000 ? core::Monitor(progress.listener()) : core::Monitor();
   for (auto _ : state)
     report = packing::SoftSpheres({.particles = static_cast<std::uint32_t>(state.range(0)),
                                    .target = packing::SoftSpheres::Target::jamming,
                                    .cov = 0,
                                    .threads = static_cast<int>(state.range(1))})
-                 .pack()
+                 .pack(monitor)
                  .report;
   if (!report.reached())
     state.SkipWithError("the jamming point was not reached");
@@ -151,6 +157,16 @@ BENCHMARK(packing_to_jamming)
     ->Iterations(1)
     ->UseRealTime()
     ->Unit(benchmark::kSecond);
+
+[[maybe_unused]] const bool more = [] {
+  if (const char* spheres = std::getenv("CDEM_PACKING_SPHERES"))
+    benchmark::RegisterBenchmark("packing_to_jamming", packing_to_jamming)
+        ->Args({std::atoll(spheres), 2})
+        ->Iterations(1)
+        ->UseRealTime()
+        ->Unit(benchmark::kSecond);
+  return true;
+}();
 
 } // namespace
 
