@@ -1,6 +1,7 @@
 // Static tension to a relative residual of 1e-8: conjugate gradients preconditioned by 6x6 blocks, written by hand on the
 // library's operator, beside the static multigrid. Arguments: particles, 1000 r_mu, contrast (stiffness of a
-// sphere of radius 0.3 sides over that around it, as a power of ten), threads.
+// sphere of radius 0.3 sides over that around it, as a power of ten), threads. With CDEM_BENCH_PARTICLES=N in the
+// environment one more solution, of about N particles: only its peak of memory is of interest for the largest that fit.
 
 #include <cdem/bond/linear_forces.hpp>
 #include <cdem/boundary/symmetric_tension.hpp>
@@ -11,7 +12,13 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <string>
 #include <vector>
+
+#ifdef __unix__
+#include <sys/resource.h>
+#endif
 
 #include "../common/sample.hpp"
 
@@ -53,6 +60,17 @@ struct Tension {
   particles::Motion motion;
 };
 
+/// Most memory the process has held so far, bytes: the body, its network and the solver's, and what making them took.
+double peak_memory() {
+#ifdef __unix__
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+#else
+  return 0;
+#endif
+}
+
 void static_multigrid(benchmark::State& state) {
   Tension tension(state);
   core::ThreadPool pool(static_cast<int>(state.range(3)));
@@ -71,6 +89,16 @@ void static_multigrid(benchmark::State& state) {
   state.counters["solve_s"] = report.solve_seconds;
   state.counters["us_per_particle"] = 1e6 * (report.setup_seconds + report.solve_seconds) / count;
   state.counters["bytes_per_particle"] = static_cast<double>(report.bytes) / count;
+  state.counters["peak_per_particle"] = peak_memory() / count;
+  // work by level: applications, and bytes over those of the particles' level
+  for (std::size_t k = 0; k < report.levels.size(); ++k) {
+    const auto& level = report.levels[k];
+    const std::string name = "level" + std::to_string(k);
+    state.counters[name + "_nodes"] = static_cast<double>(level.nodes);
+    state.counters[name + "_applications"] = level.applications;
+    state.counters[name + "_work"] =
+        level.applications * static_cast<double>(level.bytes) / static_cast<double>(report.levels[0].bytes);
+  }
 }
 
 Vector6 vector_of(const particles::Spatial<>& spatial) {
@@ -154,4 +182,12 @@ BENCHMARK(static_multigrid)
 
 } // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (const char* particles = std::getenv("CDEM_BENCH_PARTICLES"))
+    benchmark::RegisterBenchmark("static_multigrid", static_multigrid)
+        ->Args({std::atoll(particles), 545, 0, 2})
+        ->Iterations(1)
+        ->Unit(benchmark::kMillisecond);
+  benchmark::RunSpecifiedBenchmarks();
+}
