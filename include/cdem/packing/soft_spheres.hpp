@@ -243,8 +243,8 @@ public:
   }
 
 private:
-  static constexpr double step_down = 0.3;        // of the overlap, from one state to the next
-  static constexpr std::uint64_t settling = 2500; // evaluations for a state on the way
+  static constexpr double step_down = 0.3; // of the overlap, from one state to the next
+  static constexpr std::uint64_t first_settling = 1200, settling = 2500; // evaluations for states on the way
 
   double density() const { return generator_.density_at(system_.scale()); }
 
@@ -305,7 +305,8 @@ private:
   void relax_at_overlap(double overlap, bool last) {
     system_.fix_overlap(overlap);
     goal_ = overlap;
-    relax(last ? parameters_.most_evaluations : system_.evaluations() + settling);
+    relax(last ? parameters_.most_evaluations
+               : system_.evaluations() + (stage_ == 0 ? first_settling : settling));
     goal_ = 0;
   }
 
