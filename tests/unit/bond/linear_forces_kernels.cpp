@@ -165,7 +165,8 @@ namespace {
 /// Forces by either kernel, block by block, and by the single loads of each bond.
 template <class Real>
 void compare_kernels() {
-  const auto& [particles, network] = millimetre_body();
+  const auto& particles = millimetre_body().particles;
+  const auto& network = millimetre_body().network;
   const bond::BasicLinearForces<Real> forces(beam, particles, network);
   const bond::detail::BlockedBonds<Real> bonds(
       particles.size(), network.first, network.second, [&](BondIndex b) {
