@@ -217,13 +217,7 @@ inline LubachevskyStillinger::LubachevskyStillinger(const Parameters& parameters
 }
 
 inline void LubachevskyStillinger::validate(const Parameters& p) {
-  core::expect(p.particles >= 1 && p.particles <= 100000000, "number of particles", p.particles,
-               "1 to 100000000 is expected");
-  core::expect(p.cov >= 0 && p.cov <= 0.5, "CoV of the radii", p.cov, "0 to 0.5 is expected");
-  core::expect(p.truncation >= 1 && p.truncation <= 6, "truncation", p.truncation,
-               "1 to 6 standard deviations is expected");
-  core::expect(p.smallest_radius >= 0.01 && p.smallest_radius <= 0.9, "smallest radius over the mean",
-               p.smallest_radius, "0.01 to 0.9 is expected");
+  detail::expect_size_law(p);
   if (p.cov == 0)
     core::expect(p.density > 0 && p.density < densest_of_equal, "density", p.density,
                  "above 0 and below pi/sqrt(18) = 0.7405, the densest packing of equal spheres, is expected");
@@ -245,21 +239,12 @@ inline void LubachevskyStillinger::validate(const Parameters& p) {
 }
 
 inline void LubachevskyStillinger::draw_sizes() {
-  const double half_width = parameters_.truncation * parameters_.cov;
-  sizes_ = detail::truncated_normal(parameters_.particles, parameters_.cov,
-                                    std::max(1 - half_width, parameters_.smallest_radius), 1 + half_width,
-                                    random_);
-  const double mean = std::accumulate(sizes_.begin(), sizes_.end(), 0.0) / static_cast<double>(sizes_.size());
-  for (double& size : sizes_)
-    size /= 2 * mean;
+  sizes_ = detail::draw_sizes(parameters_, random_);
   size_volume_ = detail::volume_of_spheres(sizes_);
   largest_size_ = *std::max_element(sizes_.begin(), sizes_.end());
 
   const double diameter = 2 * largest_size_ * scale_at(parameters_.density);
-  const double limit = periodic_ ? 0.45 : 1;
-  core::expect(diameter < limit, "number of particles", parameters_.particles,
-               "more are expected: the largest sphere's diameter would be " + core::to_text(diameter) +
-                   " of the side, and below " + core::to_text(limit) + " is needed");
+  detail::expect_room(parameters_, diameter, periodic_);
 }
 
 inline Packing<LubachevskyStillinger::Report>

@@ -156,19 +156,13 @@ inline SoftSpheres::SoftSpheres(const Parameters& parameters)
 }
 
 inline void SoftSpheres::validate(const Parameters& p) {
-  core::expect(p.particles >= 1 && p.particles <= 100000000, "number of particles", p.particles,
-               "1 to 100000000 is expected");
+  detail::expect_size_law(p);
   core::expect(p.target == Target::jamming || p.target == Target::density ||
                    p.target == Target::contact_number,
                "target", static_cast<int>(p.target), "jamming, density or contact_number is expected");
   core::expect(p.density > 0 && p.density < 1, "density", p.density, "above 0 and below 1 is expected");
   core::expect(p.contact_number >= 6.05 && p.contact_number <= 10, "contact number", p.contact_number,
                "6.05 to 10 is expected: 6 is the jamming point");
-  core::expect(p.cov >= 0 && p.cov <= 0.5, "CoV of the radii", p.cov, "0 to 0.5 is expected");
-  core::expect(p.truncation >= 1 && p.truncation <= 6, "truncation", p.truncation,
-               "1 to 6 standard deviations is expected");
-  core::expect(p.smallest_radius >= 0.01 && p.smallest_radius <= 0.9, "smallest radius over the mean",
-               p.smallest_radius, "0.01 to 0.9 is expected");
   core::expect(p.compression >= 1e-3 && p.compression <= 0.1, "compression", p.compression,
                "a mean overlap of 1e-3 to 0.1 is expected");
   core::expect(p.jamming_overlap >= 1e-7 && p.jamming_overlap <= 1e-3, "overlap at the jamming point",
@@ -184,13 +178,7 @@ inline void SoftSpheres::validate(const Parameters& p) {
 }
 
 inline void SoftSpheres::draw_sizes() {
-  const double half_width = parameters_.truncation * parameters_.cov;
-  sizes_ = detail::truncated_normal(parameters_.particles, parameters_.cov,
-                                    std::max(1 - half_width, parameters_.smallest_radius), 1 + half_width,
-                                    random_);
-  const double mean = std::accumulate(sizes_.begin(), sizes_.end(), 0.0) / static_cast<double>(sizes_.size());
-  for (double& size : sizes_)
-    size /= 2 * mean;
+  sizes_ = detail::draw_sizes(parameters_, random_);
   size_volume_ = detail::volume_of_spheres(sizes_);
 
   if (!periodic_ && parameters_.target != Target::density)
@@ -198,10 +186,7 @@ inline void SoftSpheres::draw_sizes() {
   const double density =
       periodic_ ? std::max(parameters_.density, 0.7) : parameters_.density; // 0.7 on the way
   const double diameter = 2 * *std::max_element(sizes_.begin(), sizes_.end()) * scale_at(density);
-  const double limit = periodic_ ? 0.45 : 1;
-  core::expect(diameter < limit, "number of particles", parameters_.particles,
-               "more are expected: the largest sphere's diameter would be " + core::to_text(diameter) +
-                   " of the side, and below " + core::to_text(limit) + " is needed");
+  detail::expect_room(parameters_, diameter, periodic_);
 }
 
 /// Random places of a loose arrangement without overlaps.

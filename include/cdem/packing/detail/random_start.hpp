@@ -3,6 +3,7 @@
 /// @file
 /// Random radii and a random, loose arrangement of spheres.
 
+#include <cdem/core/error.hpp>
 #include <cdem/core/random.hpp>
 #include <cdem/packing/detail/cell_grid.hpp>
 
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <string>
 #include <vector>
 
 namespace cdem::packing::detail {
@@ -31,6 +33,41 @@ inline double volume_of_spheres(const std::vector<double>& radii) {
   return 4.0 / 3.0 * std::numbers::pi *
          std::accumulate(radii.begin(), radii.end(), 0.0,
                          [](double sum, double radius) { return sum + radius * radius * radius; });
+}
+
+/// Checks the law of the radii that generators share: their number, CoV and cuts.
+/// @throws core::InvalidInput naming the value that is out of its range
+template <class Parameters>
+void expect_size_law(const Parameters& p) {
+  core::expect(p.particles >= 1 && p.particles <= 100000000, "number of particles", p.particles,
+               "1 to 100000000 is expected");
+  core::expect(p.cov >= 0 && p.cov <= 0.5, "CoV of the radii", p.cov, "0 to 0.5 is expected");
+  core::expect(p.truncation >= 1 && p.truncation <= 6, "truncation", p.truncation,
+               "1 to 6 standard deviations is expected");
+  core::expect(p.smallest_radius >= 0.01 && p.smallest_radius <= 0.9, "smallest radius over the mean",
+               p.smallest_radius, "0.01 to 0.9 is expected");
+}
+
+/// Radii of that law, at a mean diameter of 1.
+template <class Parameters>
+std::vector<double> draw_sizes(const Parameters& p, core::Random& random) {
+  const double half_width = p.truncation * p.cov;
+  std::vector<double> sizes = truncated_normal(
+      p.particles, p.cov, std::max(1 - half_width, p.smallest_radius), 1 + half_width, random);
+  const double mean = std::accumulate(sizes.begin(), sizes.end(), 0.0) / static_cast<double>(sizes.size());
+  for (double& size : sizes)
+    size /= 2 * mean;
+  return sizes;
+}
+
+/// @param diameter  of the largest sphere, over the side of the cube
+/// @throws core::InvalidInput unless the spheres are small enough for the box: periodic images may not see each other
+template <class Parameters>
+void expect_room(const Parameters& p, double diameter, bool periodic) {
+  const double limit = periodic ? 0.45 : 1;
+  core::expect(diameter < limit, "number of particles", p.particles,
+               "more are expected: the largest sphere's diameter would be " + core::to_text(diameter) +
+                   " of the side, and below " + core::to_text(limit) + " is needed");
 }
 
 /// Places spheres one after another, the largest first, uniformly where they overlap none of those before (random
