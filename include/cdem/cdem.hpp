@@ -11,6 +11,7 @@
 #include <cdem/boundary/faces.hpp>
 #include <cdem/boundary/symmetric_tension.hpp>
 #include <cdem/core/error.hpp>
+#include <cdem/core/huge_pages.hpp>
 #include <cdem/core/parallel.hpp>
 #include <cdem/core/progress.hpp>
 #include <cdem/core/random.hpp>
