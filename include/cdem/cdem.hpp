@@ -4,12 +4,18 @@
 /// Every header of the toolkit. One that takes only what it uses compiles faster.
 
 #include <cdem/bond/beam.hpp>
+#include <cdem/bond/bond_forces.hpp>
 #include <cdem/bond/bond_law.hpp>
+#include <cdem/bond/bond_tangent.hpp>
+#include <cdem/bond/finite_rotation.hpp>
+#include <cdem/bond/forces_of.hpp>
 #include <cdem/bond/linear_forces.hpp>
 #include <cdem/bond/material.hpp>
+#include <cdem/bond/response.hpp>
 #include <cdem/bond/spring.hpp>
 #include <cdem/boundary/faces.hpp>
 #include <cdem/boundary/symmetric_tension.hpp>
+#include <cdem/core/dual.hpp>
 #include <cdem/core/error.hpp>
 #include <cdem/core/huge_pages.hpp>
 #include <cdem/core/parallel.hpp>

@@ -1,8 +1,19 @@
 #pragma once
 
 /// @file
-/// What a bond law is: from two particles at rest to the stiffness of their bond.
+/// What a bond law is: from two particles at rest to how their bond resists.
+///
+/// There are three ways to write one, each a concept here; docs/how_to/write_a_bond_law.md shows them.
+///
+///     linear  stiffness(geometry)                  ChannelStiffness, or the 12x12 matrix of the bond
+///     force   load(prepared, deformation)          ChannelLoad, and energy(prepared, deformation)
+///     energy  energy(prepared, deformation)        a template of its Real: forces and tangent by differentiation
+///
+/// `prepared` is what the law's own prepare(geometry) returns, kept for each bond; the geometry itself where there is
+/// none. A law with a memory declares `State`, takes `const State&` last, and changes it in update(prepared,
+/// deformation, State&), which is called before load and energy.
 
+#include <cdem/core/dual.hpp>
 #include <cdem/core/types.hpp>
 #include <cdem/network/bond_network.hpp>
 #include <cdem/particles/particle_set.hpp>
@@ -10,6 +21,8 @@
 #include <Eigen/Geometry> // cross product
 
 #include <concepts>
+#include <type_traits>
+#include <utility>
 
 namespace cdem::bond {
 
@@ -21,6 +34,8 @@ struct BondGeometry {
   double radius_second = 0; ///< R_j, m
   PhaseIndex phase_first = 0;
   PhaseIndex phase_second = 0;
+  ParticleIndex first = 0;  ///< number of the first particle
+  ParticleIndex second = 0; ///< number of the second particle
 };
 
 /// Geometry of bond `b`.
@@ -28,8 +43,14 @@ inline BondGeometry geometry_of(BondIndex b, const particles::ParticleSet& parti
                                 const network::BondNetwork& network) {
   const ParticleIndex i = network.first[b], j = network.second[b];
   const double length = network.branch[b].norm();
-  return {network.branch[b] / length, length, particles.radius[i], particles.radius[j], particles.phase[i],
-          particles.phase[j]};
+  return {network.branch[b] / length,
+          length,
+          particles.radius[i],
+          particles.radius[j],
+          particles.phase[i],
+          particles.phase[j],
+          i,
+          j};
 }
 
 /// The four stiffnesses of a bond whose force is linear in its ends' small motion.
@@ -49,11 +70,92 @@ struct BondLoad {
   Vec3 moment_second; ///< N m, on the second particle, about its centre
 };
 
-/// `law.stiffness(geometry)` gives the bond's ChannelStiffness.
-template <class L>
-concept GivesChannelStiffness = requires(const L& law, const BondGeometry& geometry) {
-  { law.stiffness(geometry) } -> std::same_as<ChannelStiffness>;
+/// Two components across a bond, along t and b of its local frame (n, t, b), [L17] section 2.2.
+template <class Real = double>
+struct Across {
+  Real t{}, b{};
+  Real squared() const { return t * t + b * b; }
 };
+
+/// How a bond is deformed, in its local frame. Rigid motions give zero.
+///
+/// The frame is fixed to the bond at rest, or to the mean rotation of its ends where rotations are finite; t and b are
+/// any two directions across n, the same all the time.
+template <class Real = double>
+struct Deformation {
+  Real stretch{};       ///< m, along n; above 0 in tension
+  Across<Real> shear{}; ///< m
+  Real twist{};         ///< rad, about n
+  Across<Real> bend{};  ///< rad: difference of the ends' rotations across n
+};
+
+/// What a bond does against its deformation: the derivatives of its energy by Deformation's members where it has one.
+///
+///     F on the first particle = normal n + tangential,   M in the middle of the bond = torsion n + bending
+///     M on i = M + (L/2) n x F,  M on j = -M + (L/2) n x F
+///
+/// Forces and moments balance whatever the numbers.
+template <class Real = double>
+struct ChannelLoad {
+  Real normal{};             ///< F_n, N; above 0 pulls the ends together
+  Across<Real> tangential{}; ///< F_t, F_b, N
+  Real torsion{};            ///< M_n, N m
+  Across<Real> bending{};    ///< N m
+};
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Matrix12 = Eigen::Matrix<double, 12, 12>;
+
+/// The state of a law without a memory.
+struct NoState {};
+
+namespace detail {
+template <class L>
+struct StateOf {
+  using type = NoState;
+};
+template <class L>
+requires requires {
+  typename L::State;
+}
+struct StateOf<L> {
+  using type = typename L::State;
+};
+} // namespace detail
+
+/// What a law remembers of each bond: `L::State`, or nothing.
+template <class L>
+using StateOf = typename detail::StateOf<L>::type;
+
+/// `L::State` is declared, and is not NoState: the law has a memory of each bond.
+template <class L>
+concept HasState = !std::same_as<StateOf<L>, NoState>;
+
+/// `law.prepare(geometry)` computes once what load and energy need of a bond at rest. Not needed, saves time.
+template <class L>
+concept PreparesBonds = requires(const L& law, const BondGeometry& geometry) {
+  law.prepare(geometry);
+};
+
+namespace detail {
+template <class L>
+struct PreparedOf {
+  using type = BondGeometry;
+};
+template <PreparesBonds L>
+struct PreparedOf<L> {
+  using type =
+      std::remove_cvref_t<decltype(std::declval<const L&>().prepare(std::declval<const BondGeometry&>()))>;
+};
+} // namespace detail
+
+/// What a law is given of a bond at rest: what its prepare() returns, else the BondGeometry.
+template <class L>
+using PreparedOf = typename detail::PreparedOf<L>::type;
+
+/// The number type with which energies are differentiated by the six components of the deformation.
+using Differentiable = core::Dual<double, 6>;
 
 /// `law.validate(particles)` throws core::InvalidInput where a particle's phase has no material.
 template <class L>
@@ -61,9 +163,79 @@ concept ValidatesParticles = requires(const L& law, const particles::ParticleSet
   law.validate(particles);
 };
 
-/// A bond law. Models: Beam, Spring.
+/// `law.stiffness(geometry)` gives the bond's ChannelStiffness.
 template <class L>
-concept BondLaw = std::copy_constructible<L> && GivesChannelStiffness<L> && ValidatesParticles<L>;
+concept GivesChannelStiffness = requires(const L& law, const BondGeometry& geometry) {
+  { law.stiffness(geometry) } -> std::same_as<ChannelStiffness>;
+};
+
+/// `law.stiffness(geometry)` gives the bond's 12x12 stiffness in (u_i, th_i, u_j, th_j), rows and columns x, y, z.
+template <class L>
+concept GivesBlockStiffness = requires(const L& law, const BondGeometry& geometry) {
+  { law.stiffness(geometry) } -> std::same_as<Matrix12>;
+};
+
+/// `law.load(prepared, deformation)`, with a State `law.load(prepared, deformation, state)`, gives a ChannelLoad.
+template <class L>
+concept GivesLoad = (!HasState<L> &&
+                     requires(const L& law, const PreparedOf<L>& prepared, const Deformation<>& deformation) {
+                       { law.load(prepared, deformation) } -> std::same_as<ChannelLoad<>>;
+                     }) ||
+                    requires(const L& law, const PreparedOf<L>& prepared, const Deformation<>& deformation,
+                             const StateOf<L>& state) {
+  { law.load(prepared, deformation, state) } -> std::same_as<ChannelLoad<>>;
+};
+
+/// `law.energy(prepared, deformation)`, with a State `law.energy(prepared, deformation, state)`, gives what is stored, J,
+/// for deformations of `Real`.
+template <class L, class Real>
+concept GivesEnergy = (!HasState<L> &&
+                       requires(const L& law, const PreparedOf<L>& prepared,
+                                const Deformation<Real>& deformation) {
+                         { law.energy(prepared, deformation) } -> std::same_as<Real>;
+                       }) ||
+                      requires(const L& law, const PreparedOf<L>& prepared,
+                               const Deformation<Real>& deformation, const StateOf<L>& state) {
+  { law.energy(prepared, deformation, state) } -> std::same_as<Real>;
+};
+
+/// `law.update(prepared, deformation, state)` changes the state, which it takes by reference.
+template <class L>
+concept UpdatesState = requires(const L& law, const PreparedOf<L>& prepared, const Deformation<>& deformation,
+                                StateOf<L>& state) {
+  law.update(prepared, deformation, state);
+}
+&&!requires(const L& law, const PreparedOf<L>& prepared, const Deformation<>& deformation,
+            const StateOf<L>& state) {
+  law.update(prepared, deformation, state); // by value, or const: what it learns would be lost
+};
+
+/// A law without a memory, or one that keeps it.
+template <class L>
+concept KeepsItsState = !HasState<L> || (std::is_trivially_copyable_v<StateOf<L>> && UpdatesState<L>);
+
+/// A law whose force is linear in the small motion of the bond's ends. Models: Beam, Spring, TimoshenkoBeam.
+template <class L>
+concept LinearLaw = GivesChannelStiffness<L> || GivesBlockStiffness<L>;
+
+/// A law that gives its load and the energy it stores.
+template <class L>
+concept ForceLaw = GivesLoad<L> && GivesEnergy<L, double> && KeepsItsState<L>;
+
+/// A law that gives its energy alone, as a template of the number type.
+template <class L>
+concept EnergyLaw = GivesEnergy<L, double> && GivesEnergy<L, Differentiable> && KeepsItsState<L>;
+
+/// `L::finite_rotation` is true: the bond's frame turns with its ends, however far.
+template <class L>
+concept TurnsWithItsEnds = requires {
+  requires L::finite_rotation;
+};
+
+/// A bond law. Models: Beam, Spring, and the laws that wrap another.
+template <class L>
+concept BondLaw = std::copy_constructible<L> && ValidatesParticles<L> &&
+    (LinearLaw<L> || ForceLaw<L> || EnergyLaw<L>);
 
 /// Deformation of a bond in small motion, [L17] section 2.2 in frame-free form.
 ///

@@ -34,8 +34,9 @@ public:
   ///         bond)
   /// @complexity O(bonds); at Z = 6.2 in space-filling order 79 bytes a bond (float: 61), lists included
   template <BondLaw Law>
-  BasicLinearForces(const Law& law, const particles::ParticleSet& particles,
-                    const network::BondNetwork& network)
+  requires GivesChannelStiffness<Law> BasicLinearForces(const Law& law,
+                                                        const particles::ParticleSet& particles,
+                                                        const network::BondNetwork& network)
       : bonds_(checked(law, particles, network).size(), network.first, network.second, [&](BondIndex b) {
           const BondGeometry geometry = geometry_of(b, particles, network);
           const ChannelStiffness stiffness = law.stiffness(geometry);
@@ -117,6 +118,20 @@ public:
     core::parallel_for(pool, bond_count(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b)
         forces[b] = load(b, displacement).force;
+    });
+  }
+
+  /// Moments in the middle of every bond, on its first particle's side: what a couple stress is made of.
+  ///
+  /// @param moments  [bonds] N m, overwritten
+  void bond_moments(const particles::SpatialField<>& displacement, std::vector<Vec3>& moments,
+                    core::ThreadPool& pool) const {
+    moments.resize(bond_count());
+    core::parallel_for(pool, bond_count(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        const BondLoad ends = load(b, displacement);
+        moments[b] = 0.5 * (ends.moment_first - ends.moment_second);
+      }
     });
   }
 

@@ -70,6 +70,8 @@ public:
   ///
   /// A body that nothing holds comes to rest if its loads balance; else it gains speed until max_steps. A particle
   /// without stiffness (a rattler) stays where the guess has it.
+  /// Forces with a memory of the path are tried from what they remember and accept the equilibrium found: where bonds may
+  /// break on the way, take the load in steps.
   /// @param problem  its constraints' rates are read at unit time: m and rad. Inertia is not used.
   /// @param motion   displacement: initial guess in, solution out. Velocity, time and step are left alone.
   /// @return         bitwise the same displacement for any number of threads
@@ -119,6 +121,7 @@ public:
       step();
       tell(wanted);
     }
+    accept(problem_, motion_.displacement, residual_, pool_);
     report_.relative_residual = reference_ > 0 ? norm_ / reference_ : 0;
     report_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     return report_;
@@ -268,7 +271,7 @@ private:
 
   /// The residual at a displacement and its norm; returns r.v.
   double balance(const Field& displacement) {
-    problem_.forces.evaluate(displacement, residual_, pool_);
+    follow(problem_, displacement, residual_, pool_);
     ++report_.evaluations;
     const Sums sums =
         core::parallel_sum(pool_, residual_.size(), Sums{}, [&](std::size_t begin, std::size_t end) {

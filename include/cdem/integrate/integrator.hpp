@@ -15,6 +15,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -47,10 +48,32 @@ concept GivesDiagonalBlock = requires(const F& forces, ParticleIndex i) {
   { forces.diagonal_block(i) } -> std::same_as<Eigen::Matrix<double, 6, 6>>;
 };
 
-/// The internal forces of a body, as an integrator sees them. Models: bond::LinearForces.
+/// The internal forces of a body, as an integrator sees them. Models: bond::LinearForces, bond::BondForces.
 template <class F>
 concept InternalForces =
     KnowsParticleCount<F> && EvaluatesForces<F> && GivesElasticEnergy<F> && GivesDiagonalBlock<F>;
+
+/// `forces.advance(displacement, force, pool)` evaluates and accepts the displacement: what the forces remember follows
+/// it. Not needed; forces that have it are advanced at every accepted step.
+template <class F>
+concept AdvancesState = requires(F& forces, const particles::SpatialField<>& displacement,
+                                 particles::SpatialField<>& force, core::ThreadPool& pool) {
+  forces.advance(displacement, force, pool);
+};
+
+/// `forces.dissipated_energy()` in J, what the forces lost since the beginning. Not needed.
+template <class F>
+concept BooksDissipation = requires(const F& forces) {
+  { forces.dissipated_energy() } -> std::convertible_to<double>;
+};
+
+/// `forces.tangent(displacement, pool)` are the linear forces of a small motion from there. Not needed where forces are
+/// linear themselves.
+template <class F>
+concept GivesTangent = requires(const F& forces, const particles::SpatialField<>& displacement,
+                                core::ThreadPool& pool) {
+  forces.tangent(displacement, pool);
+};
 
 /// @throws core::InvalidInput unless `field` (called `name` in the message) has `count` entries, all finite
 /// @complexity O(count)
@@ -72,7 +95,8 @@ inline void expect_finite_field(const particles::SpatialField<>& field, std::siz
 /// It refers to its parts; they must outlive it.
 template <InternalForces Forces>
 struct Problem {
-  const Forces& forces;
+  /// Forces that remember are changed by what is done with them.
+  std::conditional_t<AdvancesState<Forces>, Forces&, const Forces&> forces;
   const particles::Inertia& inertia;
   const particles::Constraints& constraints;
   const particles::SpatialField<>* load = nullptr; ///< [particles] N, N m; none when null
@@ -96,12 +120,35 @@ template <class Forces>
 Problem(const Forces&, const particles::Inertia&, const particles::Constraints&,
         const particles::SpatialField<>* = nullptr) -> Problem<Forces>;
 
+/// Internal forces at a displacement that an integrator accepts. @param force [particles] N, N m, overwritten
+template <InternalForces Forces>
+void accept(const Problem<Forces>& problem, const particles::SpatialField<>& displacement,
+            particles::SpatialField<>& force, core::ThreadPool& pool) {
+  if constexpr (AdvancesState<Forces>)
+    problem.forces.advance(displacement, force, pool);
+  else
+    problem.forces.evaluate(displacement, force, pool);
+}
+
+/// Internal forces at a displacement on a static solver's way. @param force [particles] N, N m, overwritten
+///
+/// Forces that remember orientations alone follow the way, so that no rotation between two iterates is large; those that
+/// lose energy on it are only tried.
+template <InternalForces Forces>
+void follow(const Problem<Forces>& problem, const particles::SpatialField<>& displacement,
+            particles::SpatialField<>& force, core::ThreadPool& pool) {
+  if constexpr (BooksDissipation<Forces>)
+    problem.forces.evaluate(displacement, force, pool);
+  else
+    accept(problem, displacement, force, pool);
+}
+
 /// Energies of a body, J. What came in equals what is there: initial + work = kinetic + elastic + dissipated.
 struct EnergyLedger {
   double kinetic = 0;       ///< sum of m v^2/2 + I w^2/2
   double elastic = 0;       ///< of the bonds
   double external_work = 0; ///< of the prescribed motion (reactions) and of the loads, since the first step
-  double dissipated = 0;    ///< by damping, since the first step
+  double dissipated = 0;    ///< by damping and by the bonds, since the first step
   double initial = 0;       ///< kinetic and elastic at the first step
 
   /// What is missing (below 0: too much), J. For velocity Verlet it falls as the square of the time step.
@@ -124,9 +171,12 @@ inline double kinetic_energy(const particles::Inertia& inertia, const particles:
 template <InternalForces Forces>
 EnergyLedger energy_ledger(const Problem<Forces>& problem, const particles::Motion& motion,
                            core::ThreadPool& pool) {
-  return {kinetic_energy(problem.inertia, motion.velocity, pool),
-          problem.forces.elastic_energy(motion.displacement, pool), motion.energy.external_work,
-          motion.energy.dissipated, motion.energy.initial};
+  EnergyLedger ledger{kinetic_energy(problem.inertia, motion.velocity, pool),
+                      problem.forces.elastic_energy(motion.displacement, pool), motion.energy.external_work,
+                      motion.energy.dissipated, motion.energy.initial};
+  if constexpr (BooksDissipation<Forces>)
+    ledger.dissipated += problem.forces.dissipated_energy();
+  return ledger;
 }
 
 /// Where a run stands, shown to its observer after every step.

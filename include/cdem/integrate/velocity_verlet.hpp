@@ -215,7 +215,7 @@ private:
     if (parameters_.damping.beta > 0)
       problem.forces.evaluate(work.ahead, work.damped, pool);
     const BlockStep<P> use{problem, motion, work, parameters_, stage};
-    const Sums sums = with_forces(problem.forces, motion.displacement, work.force, pool, use);
+    const Sums sums = with_forces(problem, motion.displacement, work.force, pool, use);
     motion.energy.external_power = sums.external_power;
     motion.energy.dissipated_power = sums.dissipated_power;
     return sums.kinetic;
@@ -281,13 +281,12 @@ private:
 
   /// Sum of use(begin, end, force) over blocks of particles, in block order.
   template <class Forces, class Use>
-  static Sums with_forces(const Forces& forces, const Field& displacement, Field& force,
+  static Sums with_forces(const Problem<Forces>& problem, const Field& displacement, Field& force,
                           core::ThreadPool& pool, const Use& use) {
     if constexpr (EvaluatesBlockwise<Forces>) {
-      return forces.evaluate_blockwise(displacement, Sums{}, pool, use);
+      return problem.forces.evaluate_blockwise(displacement, Sums{}, pool, use);
     } else {
-      force.resize(displacement.size());
-      forces.evaluate(displacement, force, pool);
+      accept(problem, displacement, force, pool);
       return core::parallel_sum(pool, displacement.size(), Sums{}, [&](std::size_t begin, std::size_t end) {
         return use(begin, end, force.data() + begin);
       });

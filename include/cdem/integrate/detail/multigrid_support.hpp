@@ -138,9 +138,11 @@ struct Support {
 /// Decides what is free, from the constraints and loads on each connected part.
 ///
 /// The largest part is the body; it must be held, or be periodic and free to translate under balanced loads.
+/// @param loads  [particles], null for none
 /// @throws core::InvalidInput naming the body's free rigid motions, or the cluster on which a load does work
 template <LinearBonds Forces>
-Support find_support(const Problem<Forces>& problem, const Bonds<Forces>& bonds) {
+Support find_support(const Problem<Forces>& problem, const Bonds<Forces>& bonds,
+                     const particles::SpatialField<>* loads) {
   const std::uint32_t particles = bonds.particles();
   Components parts = find_components(bonds);
   Support support;
@@ -162,11 +164,11 @@ Support find_support(const Problem<Forces>& problem, const Bonds<Forces>& bonds)
     parts.held[part] += row * row.transpose();
   }
 
-  std::vector<Vector6> wrench(problem.load ? parts.count() : 0, Vector6::Zero());
+  std::vector<Vector6> wrench(loads ? parts.count() : 0, Vector6::Zero());
   std::vector<double> load_size(wrench.size(), 0);
-  if (problem.load)
+  if (loads)
     for (std::size_t i = 0; i < particles; ++i) {
-      const auto& load = (*problem.load)[i];
+      const auto& load = (*loads)[i];
       const std::uint32_t part = parts.of[i];
       const Vec3 moment = load.angular() / bonds.units().length + parts.position[i].cross(load.linear());
       wrench[part].head<3>() += load.linear();
