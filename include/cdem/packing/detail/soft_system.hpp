@@ -86,7 +86,7 @@ public:
       renew_lists();
     partial_.resize(lists_.blocks());
     pool_.for_each_block(lists_.blocks(), [&](std::size_t b) {
-      kernels_.forces(lists_.block(b, spheres_, scale_, periodic_), velocity_.data(), force_.data(),
+      kernels_.forces(lists_.block(b, spheres_, scale_, !periodic_), velocity_.data(), force_.data(),
                       partial_[b]);
     });
     sums_ = {};
@@ -122,7 +122,7 @@ public:
     }
     farthest_.resize(lists_.blocks());
     pool_.for_each_block(lists_.blocks(), [&](std::size_t b) {
-      const SoftBlock block = lists_.block(b, spheres_, scale_, periodic_);
+      const SoftBlock block = lists_.block(b, spheres_, scale_, !periodic_);
       farthest_[b] =
           kernels_.move(step, block.begin, block.end, force_.data(), velocity_.data(), spheres_.data());
     });
@@ -153,7 +153,7 @@ private:
 
   double farthest_move() {
     pool_.for_each_block(lists_.blocks(), [&](std::size_t b) {
-      const SoftBlock block = lists_.block(b, spheres_, scale_, periodic_);
+      const SoftBlock block = lists_.block(b, spheres_, scale_, !periodic_);
       farthest_[b] = 0;
       for (ParticleIndex i = block.begin; i < block.end; ++i) {
         double square = 0;
@@ -185,7 +185,7 @@ private:
     listed_skin_ = skin_;
     moved_ = 0;
     listed_at_ = evaluations_;
-    lists_.build(spheres_, cells_, scale_, skin_, largest_, periodic_, pool_);
+    lists_.build(spheres_, cells_, scale_, skin_, largest_, pool_);
   }
 
   /// A wide skin while spheres travel, a narrow one when they have settled: any gives the same motion but for
