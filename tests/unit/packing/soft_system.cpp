@@ -100,8 +100,9 @@ TEST_CASE("forces and the work of swelling are the slopes of the energy, periodi
         moved[i][k] = x - h;
         const double below = energy(moved, scale, periodic);
         moved[i][k] = x;
-        worst = std::max(worst, std::abs(system.forces()[i][k] + (above - below) / (2 * h)));
-        largest = std::max(largest, std::abs(system.forces()[i][k]));
+        const double force = system.forces()[i][k];
+        worst = std::max(worst, std::abs(force + (above - below) / (2 * h)));
+        largest = std::max(largest, std::abs(force));
       }
     CHECK(worst < 1e-7 * largest);
     const double slope =

@@ -53,7 +53,9 @@ public:
 #endif
     return find_near_anywhere(own, i, rule);
   }
-  const ParticleIndex* found() const { return found_.data(); }
+  const ParticleIndex* found() const {
+    return found_.data();
+  }
 
 private:
 #if defined(__x86_64__)
@@ -72,7 +74,7 @@ private:
       spheres_[c] = i;
     }
     const double *const x = values_[0].data(), *const y = values_[1].data(), *const z = values_[2].data(),
-                 *const size = values_[3].data();
+                        *const size = values_[3].data();
     const ParticleIndex* const index = spheres_.data();
     ParticleIndex* const found = found_.data();
     const double own_x = own.component[0], own_y = own.component[1], own_z = own.component[2],

@@ -8,21 +8,28 @@
 namespace cdem::packing::detail {
 
 /// Four numbers as they lie in memory: x, y, z and a fourth that goes with them.
-struct alignas(32) Quad {
-  double component[4] = {0, 0, 0, 0};
+template <class Real>
+struct alignas(4 * sizeof(Real)) QuadOf {
+  Real component[4] = {0, 0, 0, 0};
 
-  double& operator[](int k) { return component[k]; }
-  double operator[](int k) const { return component[k]; }
+  Real& operator[](int k) { return component[k]; }
+  Real operator[](int k) const { return component[k]; }
 };
+
+using Quad = QuadOf<double>;
+/// For what need not be more precise than a part in 10^7 of itself: half the memory.
+using ShortQuad = QuadOf<float>;
 
 using core::Four;
 using core::load;
 using core::store;
 
-[[gnu::always_inline]] inline void load(Four& to, const Quad& from) {
+template <class Real>
+[[gnu::always_inline]] inline void load(Four& to, const QuadOf<Real>& from) {
   load(to, from.component);
 }
-[[gnu::always_inline]] inline void store(Quad& to, const Four& from) {
+template <class Real>
+[[gnu::always_inline]] inline void store(QuadOf<Real>& to, const Four& from) {
   store(to.component, from);
 }
 

@@ -20,8 +20,9 @@ struct SoftBlock {
   /// Places in the lists, some 12 spheres, by which neighbours are asked from memory before they are needed.
   static constexpr std::uint32_t read_ahead = 96;
 
-  const Quad* spheres;           ///< of all
-  const ParticleIndex* entries;  ///< neighbours of the block's spheres, one list after the other, then `read_ahead` more
+  const Quad* spheres; ///< of all
+  const ParticleIndex*
+      entries; ///< neighbours of the block's spheres, one list after the other, then `read_ahead` more
   const std::uint32_t* list_end; ///< [block] where a sphere's list ends in `entries`; a multiple of four
   ParticleIndex begin, end;
   double scale; ///< radius over size
@@ -62,8 +63,8 @@ inline void push_off(double height, double radius, double inwards, double& force
 /// @param velocity  of all
 /// @param force     of all, those of the block are written
 template <bool wraps, bool walls>
-[[gnu::always_inline]] inline void soft_forces(const SoftBlock& block, const Quad* velocity, Quad* force,
-                                               SoftSums& sums) {
+[[gnu::always_inline]] inline void soft_forces(const SoftBlock& block, const ShortQuad* velocity,
+                                               ShortQuad* force, SoftSums& sums) {
   const Four zero = {0, 0, 0, 0};
   const Four one = {1, 1, 1, 1};
   Four sum = zero, squares = zero, power = zero, velocities = zero;
@@ -71,7 +72,7 @@ template <bool wraps, bool walls>
   for (ParticleIndex i = block.begin; i < block.end; ++i) {
     const Quad& own = block.spheres[i];
     const Four x = one * own.component[0], y = one * own.component[1], z = one * own.component[2],
-                size = one * own.component[3];
+               size = one * own.component[3];
     Four fx = zero, fy = zero, fz = zero, swelling = zero;
     for (const std::uint32_t end = block.list_end[i - block.begin]; k < end; k += 4) {
       for (std::uint32_t n = k + SoftBlock::read_ahead; n < k + SoftBlock::read_ahead + 4; ++n)
@@ -103,10 +104,9 @@ template <bool wraps, bool walls>
       swelling += push * (reach * reach + square);
     }
     // The four sums side by side: one addition of each pair of halves for all.
-    const Four xy =
-        __builtin_shufflevector(fx, fy, 0, 4, 2, 6) + __builtin_shufflevector(fx, fy, 1, 5, 3, 7);
+    const Four xy = __builtin_shufflevector(fx, fy, 0, 4, 2, 6) + __builtin_shufflevector(fx, fy, 1, 5, 3, 7);
     const Four zw = __builtin_shufflevector(fz, swelling * 0.25, 0, 4, 2, 6) +
-                     __builtin_shufflevector(fz, swelling * 0.25, 1, 5, 3, 7);
+                    __builtin_shufflevector(fz, swelling * 0.25, 1, 5, 3, 7);
     Four total = __builtin_shufflevector(xy, zw, 0, 1, 4, 5) + __builtin_shufflevector(xy, zw, 2, 3, 6, 7);
     if constexpr (walls) {
       const double radius = own.component[3] * block.scale;
@@ -132,8 +132,8 @@ template <bool wraps, bool walls>
   store(sums.velocity, velocities);
 }
 
-[[gnu::always_inline]] inline void soft_forces(const SoftBlock& block, const Quad* velocity, Quad* force,
-                                               SoftSums& sums) {
+[[gnu::always_inline]] inline void soft_forces(const SoftBlock& block, const ShortQuad* velocity,
+                                               ShortQuad* force, SoftSums& sums) {
   block.walls   ? soft_forces<false, true>(block, velocity, force, sums)
   : block.wraps ? soft_forces<true, false>(block, velocity, force, sums)
                 : soft_forces<false, false>(block, velocity, force, sums);
@@ -147,7 +147,7 @@ struct SoftStep {
 /// Moves the spheres [begin, end). Those that touch nothing stop.
 /// @return  at least the square of the farthest move
 [[gnu::always_inline]] inline double soft_move(const SoftStep& step, ParticleIndex begin, ParticleIndex end,
-                                               const Quad* force, Quad* velocity, Quad* spheres) {
+                                               const ShortQuad* force, ShortQuad* velocity, Quad* spheres) {
   const Four zero = {0, 0, 0, 0};
   const Four push = {step.push, step.push, step.push, 0};
   Four farthest = zero;
@@ -170,15 +170,16 @@ struct SoftStep {
 
 /// The two loops of the descent, for any processor.
 struct SoftKernels {
-  void (*forces)(const SoftBlock& block, const Quad* velocity, Quad* force, SoftSums& sums);
-  double (*move)(const SoftStep& step, ParticleIndex begin, ParticleIndex end, const Quad* force,
-                 Quad* velocity, Quad* spheres);
+  void (*forces)(const SoftBlock& block, const ShortQuad* velocity, ShortQuad* force, SoftSums& sums);
+  double (*move)(const SoftStep& step, ParticleIndex begin, ParticleIndex end, const ShortQuad* force,
+                 ShortQuad* velocity, Quad* spheres);
 
-  static void forces_anywhere(const SoftBlock& block, const Quad* velocity, Quad* force, SoftSums& sums) {
+  static void forces_anywhere(const SoftBlock& block, const ShortQuad* velocity, ShortQuad* force,
+                              SoftSums& sums) {
     soft_forces(block, velocity, force, sums);
   }
-  static double move_anywhere(const SoftStep& step, ParticleIndex begin, ParticleIndex end, const Quad* force,
-                              Quad* velocity, Quad* spheres) {
+  static double move_anywhere(const SoftStep& step, ParticleIndex begin, ParticleIndex end,
+                              const ShortQuad* force, ShortQuad* velocity, Quad* spheres) {
     return soft_move(step, begin, end, force, velocity, spheres);
   }
 
@@ -188,13 +189,13 @@ struct SoftKernels {
 #if defined(__x86_64__)
   // The same operations in the same order in registers of 256 bits. Not fused, so that the bytes are the same (unless
   // the whole translation unit is compiled for fused multiply-add, as by -march=native).
-  [[gnu::target("avx2")]] static void forces_avx2(const SoftBlock& block, const Quad* velocity, Quad* force,
-                                                  SoftSums& sums) {
+  [[gnu::target("avx2")]] static void forces_avx2(const SoftBlock& block, const ShortQuad* velocity,
+                                                  ShortQuad* force, SoftSums& sums) {
     soft_forces(block, velocity, force, sums);
   }
   [[gnu::target("avx2")]] static double move_avx2(const SoftStep& step, ParticleIndex begin,
-                                                  ParticleIndex end, const Quad* force, Quad* velocity,
-                                                  Quad* spheres) {
+                                                  ParticleIndex end, const ShortQuad* force,
+                                                  ShortQuad* velocity, Quad* spheres) {
     return soft_move(step, begin, end, force, velocity, spheres);
   }
 #endif

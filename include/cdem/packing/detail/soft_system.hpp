@@ -53,7 +53,7 @@ public:
   /// Which sphere of those given to the constructor each is.
   const std::vector<ParticleIndex>& identity() const noexcept { return identity_; }
   /// Force on each sphere (x, y, z) at the last evaluate().
-  const std::vector<Quad>& forces() const noexcept { return force_; }
+  const std::vector<ShortQuad>& forces() const noexcept { return force_; }
   const SoftSums& sums() const noexcept { return sums_; }
   /// Lists that hold all the contacts at the last evaluate().
   const VerletLists& lists() const noexcept { return lists_; }
@@ -134,7 +134,7 @@ private:
   double swelling_unit() const { return 6 * static_cast<double>(size()) * scale_ * scale_; }
 
   void rest() {
-    std::fill(velocity_.begin(), velocity_.end(), Quad{});
+    std::fill(velocity_.begin(), velocity_.end(), ShortQuad{});
     swelling_ = 0;
     mixing_ = 0.1;
     downhill_ = 0;
@@ -208,9 +208,10 @@ private:
     values.swap(scratch);
   }
 
-  std::vector<Quad> spheres_, velocity_, force_; ///< [spheres]
-  std::vector<Quad> listed_;                     ///< [spheres] places for which the lists were made
-  std::vector<ParticleIndex> identity_, order_;  ///< [spheres]
+  std::vector<Quad> spheres_;                   ///< [spheres]
+  std::vector<ShortQuad> velocity_, force_;     ///< [spheres]
+  std::vector<Quad> listed_;                    ///< [spheres] places for which the lists were made
+  std::vector<ParticleIndex> identity_, order_; ///< [spheres]
   SortedCells cells_;
   VerletLists lists_;
   std::vector<SoftSums> partial_; ///< [blocks]

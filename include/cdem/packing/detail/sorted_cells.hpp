@@ -70,8 +70,8 @@ public:
   /// Whether that search goes on at an opposite face.
   bool wraps_around(const std::array<int, 3>& place, double reach) const {
     const int layers = layers_within(reach);
-    return periodic_ && std::any_of(place.begin(), place.end(),
-                                    [&](int a) { return a < layers || a >= cells_ - layers; });
+    return periodic_ &&
+           std::any_of(place.begin(), place.end(), [&](int a) { return a < layers || a >= cells_ - layers; });
   }
 
   /// Calls visit(begin, end) with the ranges of spheres that may be closer than `reach` to a point of the cell at

@@ -87,8 +87,8 @@ private:
   }
 
   std::vector<std::vector<ParticleIndex>> entries_; ///< [blocks]
-  std::vector<char> wraps_; ///< [blocks] whether pairs were searched for through a periodic face
-  std::vector<std::uint32_t> list_end_;             ///< [spheres] end of the list in its block's entries
+  std::vector<char> wraps_;             ///< [blocks] whether pairs were searched for through a periodic face
+  std::vector<std::uint32_t> list_end_; ///< [spheres] end of the list in its block's entries
 };
 
 } // namespace cdem::packing::detail
