@@ -229,7 +229,7 @@ public:
 
 private:
   static constexpr double step_down = 0.3; // of the overlap, from one state to the next
-  static constexpr std::uint64_t first_settling = 1200, settling = 2500; // evaluations for states on the way
+  static constexpr std::uint64_t first_settling = 1200, settling = 1500; // evaluations for states on the way
   /// Evaluations of a state at least: spheres that still swing are for moments near balance, before contacts have
   /// found their places.
   static constexpr std::uint64_t least_settling = 600;

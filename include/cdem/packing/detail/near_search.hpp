@@ -81,7 +81,7 @@ private:
                  own_reach = own.component[3] * rule.scale + rule.skin;
     std::size_t count = 0;
     for (std::size_t c = 0; c < count_; c += 4) {
-      Four dx, dy, dz, reach;
+      core::Four dx, dy, dz, reach;
       load(dx, x + c);
       load(dy, y + c);
       load(dz, z + c);

@@ -20,21 +20,20 @@ using Quad = QuadOf<double>;
 /// For what need not be more precise than a part in 10^7 of itself: half the memory.
 using ShortQuad = QuadOf<float>;
 
-using core::Four;
 using core::load;
 using core::store;
 
 template <class Real>
-[[gnu::always_inline]] inline void load(Four& to, const QuadOf<Real>& from) {
+[[gnu::always_inline]] inline void load(core::Four& to, const QuadOf<Real>& from) {
   load(to, from.component);
 }
 template <class Real>
-[[gnu::always_inline]] inline void store(QuadOf<Real>& to, const Four& from) {
+[[gnu::always_inline]] inline void store(QuadOf<Real>& to, const core::Four& from) {
   store(to.component, from);
 }
 
 /// Brings each of the four differences of coordinates in the unit cube to the nearest periodic image.
-[[gnu::always_inline]] inline void wrap(Four& difference) {
+[[gnu::always_inline]] inline void wrap(core::Four& difference) {
   constexpr double round = 0x1.8p52; // adding it leaves no bits for the fraction
   difference -= (difference + round) - round;
 }

@@ -65,38 +65,38 @@ inline void push_off(double height, double radius, double inwards, double& force
 template <bool wraps, bool walls>
 [[gnu::always_inline]] inline void soft_forces(const SoftBlock& block, const ShortQuad* velocity,
                                                ShortQuad* force, SoftSums& sums) {
-  const Four zero = {0, 0, 0, 0};
-  const Four one = {1, 1, 1, 1};
-  Four sum = zero, squares = zero, power = zero, velocities = zero;
+  const core::Four zero = {0, 0, 0, 0};
+  const core::Four one = {1, 1, 1, 1};
+  core::Four sum = zero, squares = zero, power = zero, velocities = zero;
   std::uint32_t k = 0;
   for (ParticleIndex i = block.begin; i < block.end; ++i) {
     const Quad& own = block.spheres[i];
-    const Four x = one * own.component[0], y = one * own.component[1], z = one * own.component[2],
-               size = one * own.component[3];
-    Four fx = zero, fy = zero, fz = zero, swelling = zero;
+    const core::Four x = one * own.component[0], y = one * own.component[1], z = one * own.component[2],
+                     size = one * own.component[3];
+    core::Four fx = zero, fy = zero, fz = zero, swelling = zero;
     for (const std::uint32_t end = block.list_end[i - block.begin]; k < end; k += 4) {
       for (std::uint32_t n = k + SoftBlock::read_ahead; n < k + SoftBlock::read_ahead + 4; ++n)
         __builtin_prefetch(&block.spheres[block.entries[n]]);
-      Four a, b, c, d;
+      core::Four a, b, c, d;
       load(a, block.spheres[block.entries[k]]);
       load(b, block.spheres[block.entries[k + 1]]);
       load(c, block.spheres[block.entries[k + 2]]);
       load(d, block.spheres[block.entries[k + 3]]);
-      const Four xz_low = __builtin_shufflevector(a, b, 0, 4, 2, 6);
-      const Four yw_low = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-      const Four xz_high = __builtin_shufflevector(c, d, 0, 4, 2, 6);
-      const Four yw_high = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-      Four dx = x - __builtin_shufflevector(xz_low, xz_high, 0, 1, 4, 5);
-      Four dy = y - __builtin_shufflevector(yw_low, yw_high, 0, 1, 4, 5);
-      Four dz = z - __builtin_shufflevector(xz_low, xz_high, 2, 3, 6, 7);
-      const Four reach = (size + __builtin_shufflevector(yw_low, yw_high, 2, 3, 6, 7)) * block.scale;
+      const core::Four xz_low = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+      const core::Four yw_low = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+      const core::Four xz_high = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+      const core::Four yw_high = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+      core::Four dx = x - __builtin_shufflevector(xz_low, xz_high, 0, 1, 4, 5);
+      core::Four dy = y - __builtin_shufflevector(yw_low, yw_high, 0, 1, 4, 5);
+      core::Four dz = z - __builtin_shufflevector(xz_low, xz_high, 2, 3, 6, 7);
+      const core::Four reach = (size + __builtin_shufflevector(yw_low, yw_high, 2, 3, 6, 7)) * block.scale;
       if constexpr (wraps) {
         wrap(dx);
         wrap(dy);
         wrap(dz);
       }
-      const Four square = dx * dx + dy * dy + dz * dz;
-      Four push = one - square / (reach * reach);
+      const core::Four square = dx * dx + dy * dy + dz * dz;
+      core::Four push = one - square / (reach * reach);
       push = ((push > zero) & (square > zero)) ? push : zero;
       fx += push * dx;
       fy += push * dy;
@@ -104,10 +104,12 @@ template <bool wraps, bool walls>
       swelling += push * (reach * reach + square);
     }
     // The four sums side by side: one addition of each pair of halves for all.
-    const Four xy = __builtin_shufflevector(fx, fy, 0, 4, 2, 6) + __builtin_shufflevector(fx, fy, 1, 5, 3, 7);
-    const Four zw = __builtin_shufflevector(fz, swelling * 0.25, 0, 4, 2, 6) +
-                    __builtin_shufflevector(fz, swelling * 0.25, 1, 5, 3, 7);
-    Four total = __builtin_shufflevector(xy, zw, 0, 1, 4, 5) + __builtin_shufflevector(xy, zw, 2, 3, 6, 7);
+    const core::Four xy =
+        __builtin_shufflevector(fx, fy, 0, 4, 2, 6) + __builtin_shufflevector(fx, fy, 1, 5, 3, 7);
+    const core::Four zw = __builtin_shufflevector(fz, swelling * 0.25, 0, 4, 2, 6) +
+                          __builtin_shufflevector(fz, swelling * 0.25, 1, 5, 3, 7);
+    core::Four total =
+        __builtin_shufflevector(xy, zw, 0, 1, 4, 5) + __builtin_shufflevector(xy, zw, 2, 3, 6, 7);
     if constexpr (walls) {
       const double radius = own.component[3] * block.scale;
       for (int axis = 0; axis < 3; ++axis) {
@@ -118,7 +120,7 @@ template <bool wraps, bool walls>
         total[3] = work;
       }
     }
-    Four v;
+    core::Four v;
     load(v, velocity[i]);
     store(force[i], total);
     sum += total;
@@ -148,17 +150,17 @@ struct SoftStep {
 /// @return  at least the square of the farthest move
 [[gnu::always_inline]] inline double soft_move(const SoftStep& step, ParticleIndex begin, ParticleIndex end,
                                                const ShortQuad* force, ShortQuad* velocity, Quad* spheres) {
-  const Four zero = {0, 0, 0, 0};
-  const Four push = {step.push, step.push, step.push, 0};
-  Four farthest = zero;
+  const core::Four zero = {0, 0, 0, 0};
+  const core::Four push = {step.push, step.push, step.push, 0};
+  core::Four farthest = zero;
   for (ParticleIndex i = begin; i < end; ++i) {
-    Four f, v, x;
+    core::Four f, v, x;
     load(f, force[i]);
     load(v, velocity[i]);
     load(x, spheres[i]);
     v = __builtin_shufflevector(f, f, 3, 3, 3, 3) > zero ? v : zero;
     v = step.keep * v + push * f;
-    Four shift = step.step * v;
+    core::Four shift = step.step * v;
     x += shift;
     shift *= shift;
     farthest = shift > farthest ? shift : farthest;
