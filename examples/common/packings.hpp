@@ -83,7 +83,7 @@ template <>
 struct GeneratorTraits<packing::SoftSpheres> {
   using Generator = packing::SoftSpheres;
   static constexpr const char* name = "soft_spheres";
-  static constexpr int generation = 1;
+  static constexpr int generation = 2;
 
   /// Names every parameter that the packing depends on; the number of threads is none.
   template <class Visit>

@@ -31,6 +31,10 @@ using Four = Vector<double, 4>;
 [[gnu::always_inline]] inline void store(double* to, const Four& from) {
   std::memcpy(to, &from, sizeof(from));
 }
+[[gnu::always_inline]] inline void store(float* to, const Four& from) {
+  const Vector<float, 4> narrow = __builtin_convertvector(from, Vector<float, 4>);
+  std::memcpy(to, &narrow, sizeof(narrow));
+}
 
 /// Sum of the four, pairs first.
 [[gnu::always_inline]] inline double sum(const Four& v) {

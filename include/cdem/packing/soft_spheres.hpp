@@ -31,7 +31,7 @@ namespace cdem::packing {
 /// the pressure is lowered in steps, each to equilibrium, to where the overlaps vanish: the jamming point. A wanted
 /// density above it is reached by compression, with overlaps; one below it by shrinking the radii of the jammed
 /// packing, with gaps. See docs/soft_spheres.md.
-/// @complexity  5,000 to 15,000 evaluations of all forces, of about 25 ns a sphere on one core; about 300 bytes a
+/// @complexity  5,000 to 15,000 evaluations of all forces, of about 30 ns a sphere on one core; about 250 bytes a
 ///              sphere
 class SoftSpheres {
 public:
@@ -229,7 +229,10 @@ public:
 
 private:
   static constexpr double step_down = 0.3; // of the overlap, from one state to the next
-  static constexpr std::uint64_t first_settling = 1200, settling = 2500; // evaluations for states on the way
+  static constexpr std::uint64_t first_settling = 1200, settling = 1500; // evaluations for states on the way
+  /// Evaluations of a state at least: spheres that still swing are for moments near balance, before contacts have
+  /// found their places.
+  static constexpr std::uint64_t least_settling = 600;
 
   double density() const { return generator_.density_at(system_.scale()); }
 
@@ -290,9 +293,11 @@ private:
   void relax_at_overlap(double overlap, bool last) {
     system_.fix_overlap(overlap);
     goal_ = overlap;
+    least_evaluations_ = system_.evaluations() + least_settling;
     relax(last ? parameters_.most_evaluations
                : system_.evaluations() + (stage_ == 0 ? first_settling : settling));
     goal_ = 0;
+    least_evaluations_ = 0;
   }
 
   /// Descends until the forces balance, or there are none.
@@ -304,7 +309,8 @@ private:
       if (monitor_.stop_requested() || Clock::now() - reported_ > std::chrono::milliseconds(250))
         report_progress();
       const bool pressed = goal_ == 0 || std::abs(system_.overlap() / goal_ - 1) < parameters_.tolerance;
-      if (pressed && system_.residual() <= parameters_.tolerance) {
+      if (pressed && system_.evaluations() >= least_evaluations_ &&
+          system_.residual() <= parameters_.tolerance) {
         report_.balanced = true;
         return;
       }
@@ -392,8 +398,9 @@ private:
   detail::SoftSystem system_;
   Report report_;
   std::vector<State> states_;
-  double goal_ = 0;        ///< wanted overlap, 0 at a fixed scale
-  double final_scale_ = 0; ///< to which the radii are set at the end, 0 for the present one
+  double goal_ = 0;                     ///< wanted overlap, 0 at a fixed scale
+  std::uint64_t least_evaluations_ = 0; ///< before which no state is taken for balanced
+  double final_scale_ = 0;              ///< to which the radii are set at the end, 0 for the present one
   double first_residual_ = 0, fraction_ = 0;
   int stage_ = 0, stages_ = 1;
 };

@@ -6,10 +6,11 @@
 
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
+
+#include "brute_force.hpp"
 
 namespace {
 
@@ -17,24 +18,11 @@ using namespace cdem;
 using packing::Boundary;
 using packing::LubachevskyStillinger;
 using packing::StopReason;
+using sample::same_bytes;
 using Parameters = LubachevskyStillinger::Parameters;
 
-/// Largest overlap over the sum of the radii, of all pairs and walls.
 double largest_overlap(const packing::Packing<LubachevskyStillinger::Report>& packing) {
-  const auto& [spheres, box, report] = packing;
-  double largest = 0;
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const double sum = spheres.radius[i] + spheres.radius[j];
-      const double distance = box.minimum_image(spheres.position[i] - spheres.position[j]).norm();
-      largest = std::max(largest, 1 - distance / sum);
-    }
-    for (int k = 0; k < 3 && !box.periodic[0]; ++k) {
-      const double r = spheres.radius[i], x = spheres.position[i][k];
-      largest = std::max({largest, (box.lower[k] + r - x) / r, (x + r - box.upper[k]) / r});
-    }
-  }
-  return largest;
+  return sample::brute_force(packing.particles, packing.box).largest_overlap;
 }
 
 double sum_of_volumes(const particles::ParticleSet& spheres) {
@@ -60,12 +48,6 @@ double kolmogorov_smirnov(std::vector<double> sample, double cov, double lower, 
 /// Critical value at the 1 % level.
 double critical_distance(std::size_t n) {
   return 1.628 / std::sqrt(static_cast<double>(n));
-}
-
-bool same_bytes(const particles::ParticleSet& a, const particles::ParticleSet& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.position.data(), b.position.data(), a.size() * sizeof(Vec3)) == 0 &&
-         std::memcmp(a.radius.data(), b.radius.data(), a.size() * sizeof(double)) == 0;
 }
 
 std::string rejection(const Parameters& parameters) {

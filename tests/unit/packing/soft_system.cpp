@@ -100,8 +100,9 @@ TEST_CASE("forces and the work of swelling are the slopes of the energy, periodi
         moved[i][k] = x - h;
         const double below = energy(moved, scale, periodic);
         moved[i][k] = x;
-        worst = std::max(worst, std::abs(system.forces()[i][k] + (above - below) / (2 * h)));
-        largest = std::max(largest, std::abs(system.forces()[i][k]));
+        const double force = system.forces()[i][k];
+        worst = std::max(worst, std::abs(force + (above - below) / (2 * h)));
+        largest = std::max(largest, std::abs(force));
       }
     CHECK(worst < 1e-7 * largest);
     const double slope =
@@ -143,6 +144,33 @@ TEST_CASE("action is reaction: a periodic system's forces add up to nothing") {
   system.evaluate();
   for (int k = 0; k < 3; ++k)
     CHECK(std::abs(system.sums().force[k]) < 1e-12 * std::sqrt(system.sums().squares[k]));
+}
+
+TEST_CASE("it does not matter where a periodic system is cut") {
+  // Blocks inside the cube are searched and pushed without regard to the faces; moved by half a cube, others are.
+  core::ThreadPool pool(2);
+  const double scale = 0.023;
+  auto spheres = random_spheres(60000, 0.3, 13);
+  SoftSystem system(spheres, scale, true, pool);
+  for (Quad& sphere : spheres)
+    for (int k = 0; k < 3; ++k)
+      sphere[k] += sphere[k] < 0.5 ? 0.5 : -0.5;
+  SoftSystem shifted(spheres, scale, true, pool);
+  std::size_t wrapping = 0;
+  for (int step = 0; step < 5; ++step) {
+    for (SoftSystem* each : {&system, &shifted}) {
+      each->evaluate();
+      if (step < 4)
+        each->advance();
+    }
+    for (int k = 0; k < 4; ++k)
+      CHECK(shifted.sums().squares[k] == doctest::Approx(system.sums().squares[k]).epsilon(1e-9));
+    CHECK(shifted.sums().force[3] == doctest::Approx(system.sums().force[3]).epsilon(1e-9));
+  }
+  for (std::size_t block = 0; block < system.lists().blocks(); ++block)
+    wrapping += system.lists().block(block, system.spheres(), scale, false).wraps ? 1U : 0U;
+  CHECK(wrapping > 0);
+  CHECK(wrapping < system.lists().blocks());
 }
 
 TEST_CASE("any processor and any number of threads give the same bytes") {

@@ -120,8 +120,9 @@ inline SoftContacts survey_soft_contacts(const SoftSystem& system, core::ThreadP
         part.largest = std::max(part.largest, overlap);
         ++contacts[i];
       });
-      const Quad& f = system.forces()[i];
-      const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+      double square = 0;
+      for (int k = 0; k < 3; ++k)
+        square += std::pow(static_cast<double>(system.forces()[i][k]), 2);
       part.squares += square;
       part.worst = std::max(part.worst, square);
     }

@@ -53,7 +53,7 @@ public:
   /// Which sphere of those given to the constructor each is.
   const std::vector<ParticleIndex>& identity() const noexcept { return identity_; }
   /// Force on each sphere (x, y, z) at the last evaluate().
-  const std::vector<Quad>& forces() const noexcept { return force_; }
+  const std::vector<ShortQuad>& forces() const noexcept { return force_; }
   const SoftSums& sums() const noexcept { return sums_; }
   /// Lists that hold all the contacts at the last evaluate().
   const VerletLists& lists() const noexcept { return lists_; }
@@ -86,7 +86,7 @@ public:
       renew_lists();
     partial_.resize(lists_.blocks());
     pool_.for_each_block(lists_.blocks(), [&](std::size_t b) {
-      kernels_.forces(lists_.block(b, spheres_, scale_, periodic_), velocity_.data(), force_.data(),
+      kernels_.forces(lists_.block(b, spheres_, scale_, !periodic_), velocity_.data(), force_.data(),
                       partial_[b]);
     });
     sums_ = {};
@@ -122,7 +122,7 @@ public:
     }
     farthest_.resize(lists_.blocks());
     pool_.for_each_block(lists_.blocks(), [&](std::size_t b) {
-      const SoftBlock block = lists_.block(b, spheres_, scale_, periodic_);
+      const SoftBlock block = lists_.block(b, spheres_, scale_, !periodic_);
       farthest_[b] =
           kernels_.move(step, block.begin, block.end, force_.data(), velocity_.data(), spheres_.data());
     });
@@ -134,7 +134,7 @@ private:
   double swelling_unit() const { return 6 * static_cast<double>(size()) * scale_ * scale_; }
 
   void rest() {
-    std::fill(velocity_.begin(), velocity_.end(), Quad{});
+    std::fill(velocity_.begin(), velocity_.end(), ShortQuad{});
     swelling_ = 0;
     mixing_ = 0.1;
     downhill_ = 0;
@@ -153,7 +153,7 @@ private:
 
   double farthest_move() {
     pool_.for_each_block(lists_.blocks(), [&](std::size_t b) {
-      const SoftBlock block = lists_.block(b, spheres_, scale_, periodic_);
+      const SoftBlock block = lists_.block(b, spheres_, scale_, !periodic_);
       farthest_[b] = 0;
       for (ParticleIndex i = block.begin; i < block.end; ++i) {
         double square = 0;
@@ -185,7 +185,7 @@ private:
     listed_skin_ = skin_;
     moved_ = 0;
     listed_at_ = evaluations_;
-    lists_.build(spheres_, cells_, scale_, skin_, largest_, periodic_, pool_);
+    lists_.build(spheres_, cells_, scale_, skin_, largest_, pool_);
   }
 
   /// A wide skin while spheres travel, a narrow one when they have settled: any gives the same motion but for
@@ -208,9 +208,10 @@ private:
     values.swap(scratch);
   }
 
-  std::vector<Quad> spheres_, velocity_, force_; ///< [spheres]
-  std::vector<Quad> listed_;                     ///< [spheres] places for which the lists were made
-  std::vector<ParticleIndex> identity_, order_;  ///< [spheres]
+  std::vector<Quad> spheres_;                   ///< [spheres]
+  std::vector<ShortQuad> velocity_, force_;     ///< [spheres]
+  std::vector<Quad> listed_;                    ///< [spheres] places for which the lists were made
+  std::vector<ParticleIndex> identity_, order_; ///< [spheres]
   SortedCells cells_;
   VerletLists lists_;
   std::vector<SoftSums> partial_; ///< [blocks]

@@ -67,11 +67,18 @@ public:
     return {clamped(point[0]), clamped(point[1]), clamped(point[2])};
   }
 
+  /// Whether that search goes on at an opposite face.
+  bool wraps_around(const std::array<int, 3>& place, double reach) const {
+    const int layers = layers_within(reach);
+    return periodic_ &&
+           std::any_of(place.begin(), place.end(), [&](int a) { return a < layers || a >= cells_ - layers; });
+  }
+
   /// Calls visit(begin, end) with the ranges of spheres that may be closer than `reach` to a point of the cell at
   /// `place`, each once.
   template <class Visit>
   void visit_around(const std::array<int, 3>& place, double reach, Visit&& visit) const {
-    const int layers = static_cast<int>(std::min(std::ceil(reach * cells_), 1.0 * cells_));
+    const int layers = layers_within(reach);
     const Range x = range(place[0], layers), y = range(place[1], layers), z = range(place[2], layers);
     for (int c = z.begin; c != z.end; ++c)
       for (int b = y.begin; b != y.end; ++b)
@@ -86,6 +93,9 @@ private:
     int begin, end;
   };
 
+  int layers_within(double reach) const {
+    return static_cast<int>(std::min(std::ceil(reach * cells_), 1.0 * cells_));
+  }
   int clamped(double coordinate) const {
     return std::clamp(static_cast<int>(coordinate * cells_), 0, cells_ - 1);
   }
