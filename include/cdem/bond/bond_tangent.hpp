@@ -21,7 +21,8 @@ namespace cdem::bond {
 namespace detail {
 
 /// The 6x6 block of one bond's stiffness that couples its first or second end with itself: B_e' H B_e.
-inline Matrix6 end_block(const RestBond& rest, const Matrix6& resistance, bool first) {
+template <class Resistance>
+Matrix6 end_block(const RestBond& rest, const Resistance& resistance, bool first) {
   const Mat3 axes = local_frame(rest.direction).transpose();
   const double sign = first ? -1 : 1;
   Mat3 arm; // th -> -(L/2) th x n
@@ -40,13 +41,16 @@ inline Matrix6 end_block(const RestBond& rest, const Matrix6& resistance, bool f
 ///
 /// Made by BondForces::tangent(). A model of LinearForcesOfBonds: the four stiffnesses it tells of a bond are the means
 /// of H's diagonal (none below 0), enough to precondition with; what it multiplies by is H itself.
-class BondTangent {
+///
+/// @tparam Real  double; a template so that a unit that does not use it does not compile it
+template <class Real = double>
+class BasicBondTangent {
   using Field = particles::SpatialField<>;
 
 public:
   /// @param rest        [bonds] where the bonds lie
   /// @param resistance  [bonds] H, in the local frames
-  BondTangent(std::shared_ptr<const detail::BondEnds> ends, std::vector<detail::RestBond> rest,
+  BasicBondTangent(std::shared_ptr<const detail::BondEnds> ends, std::vector<detail::RestBond> rest,
               std::vector<Matrix6> resistance)
       : ends_(std::move(ends)), rest_(std::move(rest)), resistance_(std::move(resistance)) {}
 
@@ -123,29 +127,32 @@ private:
   std::vector<Matrix6> resistance_;
 };
 
+using BondTangent = BasicBondTangent<>;
+
 /// The tangent of forces with finite rotations: the bonds' forces turn with their ends, so that each bond has a 12x12
 /// block beside what its material resists (the geometric stiffness).
 ///
 /// Blocks are symmetrised: out of equilibrium the derivative of moments by rotations is not symmetric, in it it is.
-class FiniteTangent : public BondTangent {
+template <class Real = double>
+class BasicFiniteTangent : public BasicBondTangent<Real> {
   using Field = particles::SpatialField<>;
 
 public:
   /// @param block  [bonds] derivative of the forces on the ends by their motion, negative, in (u_i, th_i, u_j, th_j)
-  FiniteTangent(BondTangent material, std::vector<Matrix12> block)
-      : BondTangent(std::move(material)), block_(std::move(block)) {
+  BasicFiniteTangent(BasicBondTangent<Real> material, std::vector<Matrix12> block)
+      : BasicBondTangent<Real>(std::move(material)), block_(std::move(block)) {
     for (Matrix12& k : block_)
       k = Matrix12(0.5 * (k + k.transpose()));
   }
 
   /// f = -K x. @complexity O(bonds)
   void evaluate(const Field& x, Field& force, core::ThreadPool& pool) const {
-    force.resize(particle_count());
-    core::parallel_for(pool, particle_count(), [&](std::size_t begin, std::size_t end) {
+    force.resize(this->particle_count());
+    core::parallel_for(pool, this->particle_count(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         Vector6 sum = Vector6::Zero();
-        bond_ends().for_each_of(static_cast<ParticleIndex>(i), [&](BondIndex b) {
-          const bool first = bond_ends().first(b) == i;
+        this->bond_ends().for_each_of(static_cast<ParticleIndex>(i), [&](BondIndex b) {
+          const bool first = this->bond_ends().first(b) == i;
           sum -= block_[b].middleRows<6>(first ? 0 : 6) * motion(b, x);
         });
         force[i] = {};
@@ -157,7 +164,7 @@ public:
 
   /// x.K x / 2, J. @complexity O(bonds)
   double elastic_energy(const Field& x, core::ThreadPool& pool) const {
-    return core::parallel_sum(pool, bond_count(), 0.0, [&](std::size_t begin, std::size_t end) {
+    return core::parallel_sum(pool, this->bond_count(), 0.0, [&](std::size_t begin, std::size_t end) {
       double sum = 0;
       for (BondIndex b = begin; b < end; ++b) {
         const auto ends = motion(b, x);
@@ -169,8 +176,8 @@ public:
 
   Matrix6 diagonal_block(ParticleIndex i) const {
     Matrix6 block = Matrix6::Zero();
-    bond_ends().for_each_of(i, [&](BondIndex b) {
-      const int first = bond_ends().first(b) == i ? 0 : 6;
+    this->bond_ends().for_each_of(i, [&](BondIndex b) {
+      const int first = this->bond_ends().first(b) == i ? 0 : 6;
       block += block_[b].block<6, 6>(first, first);
     });
     return block;
@@ -178,7 +185,7 @@ public:
 
 private:
   Eigen::Matrix<double, 12, 1> motion(BondIndex b, const Field& x) const {
-    const auto &i = x[bond_ends().first(b)], &j = x[bond_ends().second(b)];
+    const auto &i = x[this->bond_ends().first(b)], &j = x[this->bond_ends().second(b)];
     Eigen::Matrix<double, 12, 1> ends;
     ends << i.linear(), i.angular(), j.linear(), j.angular();
     return ends;
@@ -186,5 +193,7 @@ private:
 
   std::vector<Matrix12> block_;
 };
+
+using FiniteTangent = BasicFiniteTangent<>;
 
 } // namespace cdem::bond

@@ -80,16 +80,17 @@ inline Matrix6 matrix_of(const ChannelStiffness& k) {
 /// A bond in balance that resists no rigid motion is known by its stiffness against slip and turn: 12x12 = B' H B.
 /// @throws core::InvalidInput if the matrix is not finite, not symmetric, or resists rigid motions, by more than 1e-9 of
 ///         itself
-inline Matrix6 resistance_of(const Matrix12& block, const BondGeometry& geometry) {
+template <class Block>
+Matrix6 resistance_of(const Block& block, const BondGeometry& geometry) {
   const Mat3 frame = local_frame(geometry.direction);
   const std::string name = "12x12 stiffness of the bond of particles " + std::to_string(geometry.first) +
                            " and " + std::to_string(geometry.second);
   if (!block.allFinite())
     core::reject(name, "not finite", "finite numbers are expected");
-  Matrix12 scaled = block; // rotations times the length: all entries N/m
+  Block scaled = block; // rotations times the length: all entries N/m
   for (const int first : {3, 9}) {
-    scaled.middleRows<3>(first) /= geometry.length;
-    scaled.middleCols<3>(first) /= geometry.length;
+    scaled.template middleRows<3>(first) /= geometry.length;
+    scaled.template middleCols<3>(first) /= geometry.length;
   }
   const double scale = scaled.cwiseAbs().maxCoeff();
   const double skew = (scaled - scaled.transpose()).cwiseAbs().maxCoeff();
