@@ -152,7 +152,7 @@ public:
 
   /// Asks for the memory that the appointments after the k-th are going to read: in steps, since each place is known
   /// from what was read at another.
-  void fetch_ahead(const std::vector<Appointment>& appointments, std::size_t k) const {
+  [[gnu::always_inline]] void fetch_ahead(const std::vector<Appointment>& appointments, std::size_t k) const {
     if (k + 24 < appointments.size()) {
       const ParticleIndex i = appointments[k + 24].sphere;
       __builtin_prefetch(&partners[i], 1);
@@ -192,7 +192,7 @@ public:
   SphereArray<std::uint32_t> waiting; ///< [spheres] last window in which a sphere or a neighbour was put off
 
 private:
-  void fetch_surroundings(ParticleIndex i) const {
+  [[gnu::always_inline]] void fetch_surroundings(ParticleIndex i) const {
     for (const ParticleIndex j : neighbours.of(i))
       __builtin_prefetch(&bodies[j], 1);
   }
