@@ -242,7 +242,7 @@ private:
     if (!shared || !share(end, pool)) {
       if (shared)
         gather_due();
-      std::sort(alone_.due.begin(), alone_.due.end());
+      sort_due(alone_);
       work_through(alone_);
       for (std::size_t lane = 0; lane < lanes; ++lane)
         spheres_.calendar.close_today(lane);
@@ -263,25 +263,23 @@ private:
     w.conflict = false;
   }
 
-  /// Takes today's appointments that are not out of date: those of the worker's zone, or all if it is alone.
+  /// Takes today's spheres that are due: those of the worker's zone, or all if it is alone.
   void collect(Worker& w) {
-    const auto take = [&](std::size_t from) {
-      const std::vector<Appointment>& today = spheres_.calendar.today_of(from);
+    const bool all = w.turn != Worker::Turn::first;
+    for (std::size_t from = 0; from < workers_.size(); ++from) {
+      const std::vector<ParticleIndex>& today = spheres_.calendar.today_of(from);
       for (std::size_t k = 0; k < today.size(); ++k) {
-        if (k + 16 < today.size())
-          __builtin_prefetch(&spheres_.bodies[today[k + 16].sphere], 1);
-        const Appointment& a = today[k];
-        if (a.time >= w.end || (w.turn == Worker::Turn::first && !w.zone.holds(a.sphere)) ||
-            spheres_.bodies[a.sphere].next != a.time)
+        if (k + 16 < today.size() && (all || w.zone.holds(today[k + 16])))
+          __builtin_prefetch(&spheres_.bodies[today[k + 16]], 1);
+        const ParticleIndex i = today[k];
+        if (!(all || w.zone.holds(i)) || spheres_.bodies[i].next >= w.end)
           continue;
-        if (spheres_.partners[a.sphere] == SphereCollisions::own_shell)
-          w.leaving.push_back(a.sphere);
+        if (spheres_.partners[i] == SphereCollisions::own_shell)
+          w.leaving.push_back(i);
         else
-          w.due.push_back(a);
+          w.due.push_back({spheres_.bodies[i].next, i});
       }
-    };
-    for (std::size_t from = 0; from < workers_.size(); ++from)
-      take(from);
+    }
   }
 
   /// Spheres that would reach their shells in this window get new ones at its start, in the order of their numbers.
@@ -295,6 +293,8 @@ private:
       spheres_.renew(alone_, i);
     }
   }
+
+  static void sort_due(Worker& w) { sort_by_time(w.due, w.now, w.per_window, w.scratch, w.ends); }
 
   void work_through(Worker& w) {
     const std::uint64_t many = 1000 + 64 * static_cast<std::uint64_t>(events_per_window());
@@ -312,7 +312,6 @@ private:
         w.sudden.pop_back();
         spheres_.handle(w, appointment);
       } else if (next < w.due.size()) {
-
         spheres_.fetch_ahead(w.due, next);
         spheres_.handle(w, w.due[next++]);
       } else
@@ -330,7 +329,7 @@ private:
       for (const Appointment& a : alone_.sudden)
         if (w.zone.holds(a.sphere))
           w.due.push_back(a);
-      std::sort(w.due.begin(), w.due.end());
+      sort_due(w);
       work_through(w);
     });
     bool bad = std::any_of(workers_.begin(), workers_.end(), in_conflict);
@@ -347,7 +346,7 @@ private:
           for (const Appointment& a : first.put_off)
             if (w.zone.holds(a.sphere))
               w.due.push_back(a);
-        std::sort(w.due.begin(), w.due.end());
+        sort_due(w);
         work_through(w);
       });
     if (!bad && std::any_of(second_.begin(), second_.end(), in_conflict)) {

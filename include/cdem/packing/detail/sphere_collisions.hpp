@@ -46,7 +46,9 @@ struct Worker {
   std::vector<Appointment> put_off;   ///< left to the second turn
   std::vector<ParticleIndex> leaving; ///< spheres that reach their shell in this window
   std::vector<Saved> saved;
-  std::vector<double> times; ///< scratch
+  std::vector<double> times;        ///< scratch of predictions
+  std::vector<Appointment> scratch; ///< of sorting
+  std::vector<std::uint32_t> ends;  ///< of sorting
   WindowSums sums;
   bool conflict = false; ///< the window has to be done again by one thread
 };
