@@ -210,13 +210,31 @@ private:
     return {static_cast<ParticleIndex>(first % all), static_cast<ParticleIndex>(last - first),
             static_cast<ParticleIndex>(all)};
   }
-  Zone first_zone(std::size_t lane) const {
-    return zone_from(size() * lane / workers_.size(), size() * (lane + 1) / workers_.size());
+  /// Spheres about a border whose first turn is noted: some layers, more than the second turn ever gets to.
+  std::size_t noted_stretch() const {
+    const double layer = std::pow(static_cast<double>(size()), 2.0 / 3);
+    return std::min(static_cast<std::size_t>(6 * layer), size() / (2 * workers_.size()));
   }
+
+  void set_first_zone(Worker& w) const {
+    w.zone = zone_from(size() * w.lane / workers_.size(), size() * (w.lane + 1) / workers_.size());
+    w.free_begin = 0;
+    w.free_end = w.zone.count;
+    const auto noted = static_cast<ParticleIndex>(noted_stretch());
+    w.inner_begin = noted;
+    w.inner_end = w.zone.count - noted;
+  }
+
   /// Half a zone further on.
-  Zone second_zone(std::size_t lane) const {
+  void set_second_zone(Worker& w) const {
     const std::size_t half = size() / (2 * workers_.size());
-    return zone_from(size() * lane / workers_.size() + half, size() * (lane + 1) / workers_.size() + half);
+    const std::size_t first = size() * w.lane / workers_.size() + half;
+    const std::size_t border = size() * (w.lane + 1) / workers_.size();
+    w.zone = zone_from(first, border + half);
+    const auto noted = static_cast<ParticleIndex>(noted_stretch()),
+               middle = static_cast<ParticleIndex>(border - first);
+    w.inner_begin = middle - std::min(noted, middle);
+    w.inner_end = std::min(middle + noted, w.zone.count);
   }
 
   void pass_window(double end, core::ThreadPool& pool) {
@@ -232,7 +250,7 @@ private:
     else
       pool.for_each_block(lanes, [&](std::size_t lane) {
         open(workers_[lane], Worker::Turn::first, now_, end);
-        workers_[lane].zone = first_zone(lane);
+        set_first_zone(workers_[lane]);
         collect(workers_[lane]);
       });
     if (shared)
@@ -258,7 +276,8 @@ private:
     w.due.clear();
     w.leaving.clear();
     w.put_off.clear();
-    w.saved.clear();
+    w.saved_events.clear();
+    w.saved_paths.clear();
     w.sums = {};
     w.conflict = false;
   }
@@ -300,6 +319,8 @@ private:
     const std::uint64_t many = 1000 + 64 * static_cast<std::uint64_t>(events_per_window());
     double looked = w.now;
     std::uint64_t next_look = many;
+    for (std::ptrdiff_t k = -SphereCollisions::reach; k < 0; ++k)
+      spheres_.fetch_ahead(w.due, k);
     for (std::size_t next = 0; !w.conflict;) {
       if (w.sums.events > next_look) {
         // Far more events than expected: does time pass at all? Threads leave that question to one of them.
@@ -312,7 +333,7 @@ private:
         w.sudden.pop_back();
         spheres_.handle(w, appointment);
       } else if (next < w.due.size()) {
-        spheres_.fetch_ahead(w.due, next);
+        spheres_.fetch_ahead(w.due, static_cast<std::ptrdiff_t>(next));
         spheres_.handle(w, w.due[next++]);
       } else
         return;
@@ -341,7 +362,7 @@ private:
         open(w, Worker::Turn::second, now_, end);
         w.sudden.clear();
         w.lane = lane;
-        w.zone = second_zone(lane);
+        set_second_zone(w);
         for (const Worker& first : workers_)
           for (const Appointment& a : first.put_off)
             if (w.zone.holds(a.sphere))
@@ -378,11 +399,14 @@ private:
   }
 
   void put_back(std::vector<Worker>& workers) {
-    for (Worker& w : workers)
-      for (auto saved = w.saved.rbegin(); saved != w.saved.rend(); ++saved) {
-        spheres_.partners[saved->sphere] = saved->partner;
-        spheres_.bodies[saved->sphere] = saved->body;
+    for (Worker& w : workers) {
+      for (auto saved = w.saved_events.rbegin(); saved != w.saved_events.rend(); ++saved)
+        spheres_.set_event(saved->sphere, {saved->next, saved->partner});
+      for (auto saved = w.saved_paths.rbegin(); saved != w.saved_paths.rend(); ++saved) {
+        spheres_.bodies[saved->sphere].origin = saved->origin;
+        spheres_.bodies[saved->sphere].velocity = saved->velocity;
       }
+    }
   }
 
   /// All that is due in the window, for one worker.
