@@ -193,7 +193,7 @@ private:
   detail::GrowingSpheres start_loose() const;
   std::string words() const;
   State state_of(const detail::GrowingSpheres& spheres, const detail::Growth& growth) const;
-  detail::GrowingSpheres spheres_of(const State& state, const core::ThreadPool& pool) const;
+  detail::GrowingSpheres spheres_of(const State& state, core::ThreadPool& pool) const;
   Packing<Report> finish(detail::GrowingSpheres& spheres, detail::Growth& growth, core::ThreadPool& pool,
                          const core::Monitor& monitor, const Checkpoints& checkpoints) const;
   StopReason grow(detail::GrowingSpheres& spheres, detail::Growth& growth, core::ThreadPool& pool,
@@ -360,7 +360,7 @@ inline LubachevskyStillinger::State LubachevskyStillinger::state_of(const detail
 }
 
 inline detail::GrowingSpheres LubachevskyStillinger::spheres_of(const State& state,
-                                                                const core::ThreadPool& pool) const {
+                                                                core::ThreadPool& pool) const {
   core::expect(state.parameters == words(), "state of a run with " + state.parameters, "",
                "one with " + words() + " is expected");
   const std::size_t count = sizes_.size();

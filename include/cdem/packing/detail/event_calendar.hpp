@@ -97,11 +97,10 @@ public:
     return lanes_[lane].days[today_ & (days_ - 1)];
   }
 
-  /// Takes today's spheres out of a lane.
-  void close_today(std::size_t lane) { lanes_[lane].days[today_ & (days_ - 1)].clear(); }
-
-  /// Goes on to the next day; today is closed in all lanes.
+  /// Goes on to the next day. Today's spheres are taken out.
   void next_day() {
+    for (Lane& lane : lanes_)
+      lane.days[today_ & (days_ - 1)].clear();
     ++today_;
     if ((today_ & (days_ / 2 - 1)) != 0)
       return;

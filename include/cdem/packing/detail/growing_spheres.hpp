@@ -54,7 +54,7 @@ public:
   }
 
   /// Goes on from a state.
-  GrowingSpheres(State state, bool periodic, const core::ThreadPool& pool)
+  GrowingSpheres(State state, bool periodic, core::ThreadPool& pool)
       : spheres_(state.bodies.size(), periodic), sums_(state.sums), energy_(state.energy),
         listed_skin_(state.listed_skin), window_(state.window), periodic_(periodic) {
     spheres_.bodies = std::move(state.bodies);
@@ -184,25 +184,26 @@ private:
     return std::clamp<std::size_t>(static_cast<std::size_t>(thick), 1, static_cast<std::size_t>(pool.size()));
   }
 
-  /// Enters all the events, and cuts the spheres into zones.
-  void open_calendar(std::uint64_t today, const core::ThreadPool& pool) {
-    const std::size_t lanes = useful_threads(pool);
-    spheres_.calendar.restart(lanes, window_, size(), 2 * events_per_window(), today);
+  /// Enters all the events, and cuts the spheres into zones. A zone has a lane of the calendar for its own spheres;
+  /// further lanes are for what the second turn and one thread alone enter.
+  void open_calendar(std::uint64_t today, core::ThreadPool& pool) {
+    const std::size_t zones = useful_threads(pool);
+    spheres_.calendar.restart(zones == 1 ? 1 : 2 * zones, window_, size(), 2 * events_per_window(), today);
     now_ = spheres_.calendar.start_of_today();
     stuck_ = false;
     repeated_ = 0;
-    workers_.resize(lanes);
-    if (lanes > 1) {
+    workers_.resize(zones);
+    alone_.lane = zones == 1 ? 0 : zones;
+    if (zones > 1) {
       spheres_.touched.assign(size(), -1.0);
       spheres_.waiting.assign(size(), 0);
       spheres_.window = 0;
     }
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const std::size_t first = size() * lane / lanes, last = size() * (lane + 1) / lanes;
-      workers_[lane].lane = lane;
-      for (std::size_t i = first; i < last; ++i)
-        spheres_.calendar.add(lane, {spheres_.bodies[i].next, static_cast<ParticleIndex>(i)});
-    }
+    pool.for_each_block(zones, [&](std::size_t zone) {
+      workers_[zone].lane = zone;
+      for (std::size_t i = size() * zone / zones; i < size() * (zone + 1) / zones; ++i)
+        spheres_.calendar.add(zone, {spheres_.bodies[i].next, static_cast<ParticleIndex>(i)});
+    });
   }
 
   Zone zone_from(std::size_t first, std::size_t last) const {
@@ -226,10 +227,10 @@ private:
   }
 
   /// Half a zone further on.
-  void set_second_zone(Worker& w) const {
+  void set_second_zone(Worker& w, std::size_t lane) const {
     const std::size_t half = size() / (2 * workers_.size());
-    const std::size_t first = size() * w.lane / workers_.size() + half;
-    const std::size_t border = size() * (w.lane + 1) / workers_.size();
+    const std::size_t first = size() * lane / workers_.size() + half;
+    const std::size_t border = size() * (lane + 1) / workers_.size();
     w.zone = zone_from(first, border + half);
     const auto noted = static_cast<ParticleIndex>(noted_stretch()),
                middle = static_cast<ParticleIndex>(border - first);
@@ -262,8 +263,6 @@ private:
         gather_due();
       sort_due(alone_);
       work_through(alone_);
-      for (std::size_t lane = 0; lane < lanes; ++lane)
-        spheres_.calendar.close_today(lane);
     }
     close_window(end);
   }
@@ -282,22 +281,30 @@ private:
     w.conflict = false;
   }
 
-  /// Takes today's spheres that are due: those of the worker's zone, or all if it is alone.
+  /// Takes today's spheres that are due: all of them, or those of the worker's zone. Its lane of the calendar has none
+  /// of another zone.
   void collect(Worker& w) {
-    const bool all = w.turn != Worker::Turn::first;
-    for (std::size_t from = 0; from < workers_.size(); ++from) {
-      const std::vector<ParticleIndex>& today = spheres_.calendar.today_of(from);
-      for (std::size_t k = 0; k < today.size(); ++k) {
-        if (k + 16 < today.size() && (all || w.zone.holds(today[k + 16])))
-          __builtin_prefetch(&spheres_.bodies[today[k + 16]], 1);
-        const ParticleIndex i = today[k];
-        if (!(all || w.zone.holds(i)) || spheres_.bodies[i].next >= w.end)
-          continue;
-        if (spheres_.partners[i] == SphereCollisions::own_shell)
-          w.leaving.push_back(i);
-        else
-          w.due.push_back({spheres_.bodies[i].next, i});
-      }
+    if (w.turn == Worker::Turn::first)
+      collect(w, w.lane, true);
+    for (std::size_t lane = w.turn == Worker::Turn::first ? workers_.size() : 0;
+         lane < spheres_.calendar.lanes(); ++lane)
+      collect(w, lane, w.turn != Worker::Turn::first);
+  }
+
+  /// @param all  whether the zone does not matter
+  void collect(Worker& w, std::size_t lane, bool all) {
+    constexpr std::size_t ahead = 16;
+    const std::vector<ParticleIndex>& today = spheres_.calendar.today_of(lane);
+    for (std::size_t k = 0; k < today.size(); ++k) {
+      if (k + ahead < today.size() && (all || w.zone.holds(today[k + ahead])))
+        __builtin_prefetch(&spheres_.bodies[today[k + ahead]], 1);
+      const ParticleIndex i = today[k];
+      if (!(all || w.zone.holds(i)) || spheres_.bodies[i].next >= w.end)
+        continue;
+      if (spheres_.partners[i] == SphereCollisions::own_shell)
+        w.leaving.push_back(i);
+      else
+        w.due.push_back({spheres_.bodies[i].next, i});
     }
   }
 
@@ -357,12 +364,11 @@ private:
     second_.resize(lanes);
     if (!bad)
       pool.for_each_block(lanes, [&](std::size_t lane) {
-        spheres_.calendar.close_today(lane);
         Worker& w = second_[lane];
         open(w, Worker::Turn::second, now_, end);
         w.sudden.clear();
-        w.lane = lane;
-        set_second_zone(w);
+        w.lane = lanes + lane;
+        set_second_zone(w, lane);
         for (const Worker& first : workers_)
           for (const Appointment& a : first.put_off)
             if (w.zone.holds(a.sphere))
