@@ -197,7 +197,8 @@ private:
     if (zones > 1) {
       spheres_.touched.assign(size(), -1.0);
       spheres_.waiting.assign(size(), 0);
-      spheres_.window = 0;
+      for (Worker& w : workers_)
+        w.waiting.clear();
     }
     pool.for_each_block(zones, [&](std::size_t zone) {
       workers_[zone].lane = zone;
@@ -239,7 +240,6 @@ private:
   }
 
   void pass_window(double end, core::ThreadPool& pool) {
-    ++spheres_.window;
     open(alone_, Worker::Turn::alone, now_, end);
     alone_.sudden.clear();
     const std::size_t lanes = workers_.size();
@@ -267,7 +267,7 @@ private:
     close_window(end);
   }
 
-  void open(Worker& w, Worker::Turn turn, double now, double end) const {
+  void open(Worker& w, Worker::Turn turn, double now, double end) {
     w.turn = turn;
     w.now = now;
     w.end = end;
@@ -275,6 +275,9 @@ private:
     w.due.clear();
     w.leaving.clear();
     w.put_off.clear();
+    for (const ParticleIndex i : w.waiting)
+      spheres_.waiting[i] = 0;
+    w.waiting.clear();
     w.saved_events.clear();
     w.saved_paths.clear();
     w.sums = {};

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace cdem::packing::detail {
@@ -55,6 +56,7 @@ struct alignas(128) Worker { // none shares a cache line with another
   std::vector<Appointment> due;       ///< appointments of the window, sorted
   std::vector<Appointment> sudden;    ///< the same that were made within it: a heap
   std::vector<Appointment> put_off;   ///< left to the second turn
+  std::vector<ParticleIndex> waiting; ///< spheres put off, and their neighbours
   std::vector<ParticleIndex> leaving; ///< spheres that reach their shell in this window
   std::vector<SavedEvent> saved_events;
   std::vector<SavedPath> saved_paths;
@@ -210,10 +212,9 @@ public:
   EventCalendar calendar;
   double scale = 0, growth = 0; ///< mean diameter at time 0, and its rate
   double skin = 0;              ///< room in a new shell
-  std::uint32_t window = 0;     ///< number of the window
   /// [spheres] last time at which a first turn wrote or weighed a sphere's event; empty with one thread
   SphereArray<double> touched;
-  SphereArray<std::uint32_t> waiting; ///< [spheres] last window in which a sphere or a neighbour was put off
+  SphereArray<std::uint8_t> waiting; ///< [spheres] whether a sphere or a neighbour was put off in this window
 
 private:
   [[gnu::always_inline]] void fetch_surroundings(ParticleIndex i) const {
@@ -224,18 +225,22 @@ private:
   /// Whether all that an event of the sphere reads and writes is in the zone and waits for nothing.
   bool may_be_first(Worker& w, ParticleIndex i) const {
     const std::span<const ParticleIndex> list = neighbours.of(i);
-    ParticleIndex low = w.zone.place(i), high = low;
-    for (const ParticleIndex j : list) {
-      const ParticleIndex place = w.zone.place(j);
-      low = std::min(low, place);
-      high = std::max(high, place);
-    }
-    w.noted = w.noted || low < w.inner_begin || high >= w.inner_end;
-    if (low >= w.free_begin && high < w.free_end) // without reading more
+    const auto are_between = [&](ParticleIndex begin, ParticleIndex end) { // places of the zone
+      begin += w.zone.first;
+      end += w.zone.first;
+      ParticleIndex furthest = i - begin;
+      for (const ParticleIndex j : list)
+        furthest = std::max(furthest, j - begin);
+      return begin < end && furthest < end - begin;
+    };
+    // Far from the borders, as nearly all are, there is nothing more to read.
+    if (are_between(std::max(w.inner_begin, w.free_begin), std::min(w.inner_end, w.free_end)))
       return true;
-    if (high >= w.zone.count)
-      return false;
-    return std::none_of(list.begin(), list.end(), [this](ParticleIndex j) { return waiting[j] == window; });
+    w.noted = true;
+    if (are_between(w.free_begin, w.free_end))
+      return true;
+    return are_between(0, w.zone.count) &&
+           std::none_of(list.begin(), list.end(), [&](ParticleIndex j) { return waiting[j] != 0; });
   }
 
   void put_off(Worker& w, const Appointment& appointment) {
@@ -247,7 +252,9 @@ private:
   }
 
   void wait(Worker& w, ParticleIndex i) {
-    waiting[i] = window;
+    if (std::exchange(waiting[i], std::uint8_t{1}) != 0)
+      return;
+    w.waiting.push_back(i);
     const ParticleIndex place = w.zone.place(i);
     if (place < w.zone.count / 2)
       w.free_begin = std::max(w.free_begin, place + 1);
