@@ -166,7 +166,7 @@ public:
   /// @throws core::Interrupted  when the monitor asks to stop
   Packing<Report> pack(const core::Monitor& monitor = core::Monitor()) const;
 
-  /// The same on several threads, to the same bytes, with checkpoints.
+  /// The same on several threads, to the same bytes, with checkpoints. Below 100,000 spheres one thread works alone.
   /// @throws core::Interrupted  when the monitor asks to stop, after checkpoints.save
   Packing<Report> pack(core::ThreadPool& pool, const core::Monitor& monitor = core::Monitor(),
                        const Checkpoints& checkpoints = {}) const;
@@ -180,7 +180,8 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
 
-  static constexpr double start_density = 0.2; // random addition is still quick
+  static constexpr double start_density = 0.2;           // random addition is still quick
+  static constexpr std::uint32_t worth_sharing = 100000; // fewer spheres are quicker on one thread
   static constexpr double fluid_density = 0.5; // just above the freezing point of equal spheres, 0.494
   static constexpr double densest_of_equal = std::numbers::pi / (3 * std::numbers::sqrt2);
 
@@ -193,7 +194,7 @@ private:
   detail::GrowingSpheres start_loose() const;
   std::string words() const;
   State state_of(const detail::GrowingSpheres& spheres, const detail::Growth& growth) const;
-  detail::GrowingSpheres spheres_of(const State& state, const core::ThreadPool& pool) const;
+  detail::GrowingSpheres spheres_of(const State& state, core::ThreadPool& pool) const;
   Packing<Report> finish(detail::GrowingSpheres& spheres, detail::Growth& growth, core::ThreadPool& pool,
                          const core::Monitor& monitor, const Checkpoints& checkpoints) const;
   StopReason grow(detail::GrowingSpheres& spheres, detail::Growth& growth, core::ThreadPool& pool,
@@ -256,18 +257,21 @@ LubachevskyStillinger::pack(const core::Monitor& monitor) const {
 inline Packing<LubachevskyStillinger::Report>
 LubachevskyStillinger::pack(core::ThreadPool& pool, const core::Monitor& monitor,
                             const Checkpoints& checkpoints) const {
+  core::ThreadPool alone;
   detail::Growth growth;
   detail::GrowingSpheres spheres = start_loose();
   growth.interval = 0.02 * spheres.scale() / static_cast<double>(spheres.size());
   growth.first_density = density_at(spheres.scale());
-  return finish(spheres, growth, pool, monitor, checkpoints);
+  return finish(spheres, growth, parameters_.particles < worth_sharing ? alone : pool, monitor, checkpoints);
 }
 
 inline Packing<LubachevskyStillinger::Report>
 LubachevskyStillinger::resume(const State& state, core::ThreadPool& pool, const core::Monitor& monitor,
                               const Checkpoints& checkpoints) const {
+  core::ThreadPool alone;
+  core::ThreadPool& team = parameters_.particles < worth_sharing ? alone : pool;
   detail::Growth growth;
-  detail::GrowingSpheres spheres = spheres_of(state, pool);
+  detail::GrowingSpheres spheres = spheres_of(state, team);
   const std::vector<double>& x = state.numbers;
   growth.pressure = x[10];
   growth.last = {state.counts[3], state.counts[4], x[11], x[12], x[13]};
@@ -278,7 +282,7 @@ LubachevskyStillinger::resume(const State& state, core::ThreadPool& pool, const 
   growth.cycle = state.counts[7];
   growth.events = state.counts[8];
   growth.collisions = state.counts[9];
-  return finish(spheres, growth, pool, monitor, checkpoints);
+  return finish(spheres, growth, team, monitor, checkpoints);
 }
 
 inline Packing<LubachevskyStillinger::Report>
@@ -360,7 +364,7 @@ inline LubachevskyStillinger::State LubachevskyStillinger::state_of(const detail
 }
 
 inline detail::GrowingSpheres LubachevskyStillinger::spheres_of(const State& state,
-                                                                const core::ThreadPool& pool) const {
+                                                                core::ThreadPool& pool) const {
   core::expect(state.parameters == words(), "state of a run with " + state.parameters, "",
                "one with " + words() + " is expected");
   const std::size_t count = sizes_.size();

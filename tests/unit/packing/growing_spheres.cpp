@@ -166,28 +166,48 @@ TEST_CASE("the calendar gives every appointment on its day, also years later") {
     packing::detail::EventCalendar calendar;
     calendar.restart(2, day, 300, 10, 0);
     std::multiset<double> expected;
+    std::vector<double> times;
     for (std::size_t k = 0; k < count; ++k) {
       const double time =
           k % 10 == 0 ? day * static_cast<double>(k) : 3 * random.uniform(); // many at midnight
       calendar.add(k % 2, {time, static_cast<ParticleIndex>(k)});
+      times.push_back(time);
       expected.insert(time);
     }
     calendar.add(0, {never, 0}); // is not kept
     while (!expected.empty()) {
       for (std::size_t lane = 0; lane < 2; ++lane) {
-        for (const auto& appointment : calendar.today_of(lane))
-          if (appointment.time < calendar.end_of_today()) {
-            REQUIRE(appointment.time >= calendar.start_of_today() * (1 - 1e-15));
-            const auto found = expected.find(appointment.time);
-            REQUIRE(found != expected.end());
-            expected.erase(found);
-          }
-        calendar.close_today(lane);
+        for (const ParticleIndex k : calendar.today_of(lane)) {
+          REQUIRE(times[k] < calendar.end_of_today());
+          REQUIRE(times[k] >= calendar.start_of_today() * (1 - 1e-15));
+          const auto found = expected.find(times[k]);
+          REQUIRE(found != expected.end());
+          expected.erase(found);
+        }
       }
       REQUIRE((expected.empty() || *expected.begin() >= calendar.end_of_today()));
       calendar.next_day();
     }
   }
+}
+
+TEST_CASE("appointments are sorted as by comparing them, however they are spread") {
+  using packing::detail::Appointment;
+  core::Random random(4);
+  std::vector<Appointment> scratch;
+  std::vector<std::uint32_t> ends;
+  for (const std::size_t count : {0UL, 5UL, 47UL, 48UL, 1000UL, 3000UL})
+    for (const double spread : {1.0, 1e-9, 0.0, 5.0}) { // of the window, none at all, beyond it
+      std::vector<Appointment> sorted;
+      for (std::size_t k = 0; k < count; ++k) // each twice
+        sorted.push_back(
+            {3 + 0.5 * spread * random.uniform(), static_cast<ParticleIndex>(random.bits() % (count / 2))});
+      auto expected = sorted;
+      std::sort(expected.begin(), expected.end());
+      packing::detail::sort_by_time(sorted, 3, 2, scratch, ends);
+      for (std::size_t k = 0; k < count; ++k)
+        REQUIRE((sorted[k].time == expected[k].time && sorted[k].sphere == expected[k].sphere));
+    }
 }
 
 TEST_CASE("near-neighbour lists hold the pairs of overlapping shells, whatever was renewed") {

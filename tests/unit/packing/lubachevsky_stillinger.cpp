@@ -242,6 +242,7 @@ TEST_CASE("no packing stalls or overlaps, whatever the seed, spread and growth")
         }
 }
 
+// Below 100,000 spheres one of the threads works alone; the dynamics on several is compared in growing_spheres.
 TEST_CASE("threads change nothing in a packing") {
   const LubachevskyStillinger generator({.particles = 6000, .density = 0.61, .cov = 0.1, .growth_rate = 0.3});
   core::ThreadPool two(2);

@@ -3,6 +3,7 @@
 /// @file
 /// Points of the unit cube sorted into cubic cells, for searches around a point.
 
+#include <cdem/core/huge_pages.hpp>
 #include <cdem/core/types.hpp>
 
 #include <algorithm>
@@ -109,8 +110,8 @@ private:
 
   bool periodic_;
   int cells_;
-  std::vector<ParticleIndex> first_; ///< [cells] a sphere of the cell
-  std::vector<Links> links_;         ///< [spheres] the others of its cell
+  std::vector<ParticleIndex, core::HugePageAllocator<ParticleIndex>> first_; ///< [cells] a sphere of the cell
+  std::vector<Links, core::HugePageAllocator<Links>> links_; ///< [spheres] the others of its cell
 };
 
 } // namespace cdem::packing::detail

@@ -54,7 +54,7 @@ public:
   }
 
   /// Goes on from a state.
-  GrowingSpheres(State state, bool periodic, const core::ThreadPool& pool)
+  GrowingSpheres(State state, bool periodic, core::ThreadPool& pool)
       : spheres_(state.bodies.size(), periodic), sums_(state.sums), energy_(state.energy),
         listed_skin_(state.listed_skin), window_(state.window), periodic_(periodic) {
     spheres_.bodies = std::move(state.bodies);
@@ -184,25 +184,27 @@ private:
     return std::clamp<std::size_t>(static_cast<std::size_t>(thick), 1, static_cast<std::size_t>(pool.size()));
   }
 
-  /// Enters all the events, and cuts the spheres into zones.
-  void open_calendar(std::uint64_t today, const core::ThreadPool& pool) {
-    const std::size_t lanes = useful_threads(pool);
-    spheres_.calendar.restart(lanes, window_, size(), 2 * events_per_window(), today);
+  /// Enters all the events, and cuts the spheres into zones. A zone has a lane of the calendar for its own spheres;
+  /// further lanes are for what the second turn and one thread alone enter.
+  void open_calendar(std::uint64_t today, core::ThreadPool& pool) {
+    const std::size_t zones = useful_threads(pool);
+    spheres_.calendar.restart(zones == 1 ? 1 : 2 * zones, window_, size(), 2 * events_per_window(), today);
     now_ = spheres_.calendar.start_of_today();
     stuck_ = false;
     repeated_ = 0;
-    workers_.resize(lanes);
-    if (lanes > 1) {
+    workers_.resize(zones);
+    alone_.lane = zones == 1 ? 0 : zones;
+    if (zones > 1) {
       spheres_.touched.assign(size(), -1.0);
       spheres_.waiting.assign(size(), 0);
-      spheres_.window = 0;
+      for (Worker& w : workers_)
+        w.waiting.clear();
     }
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const std::size_t first = size() * lane / lanes, last = size() * (lane + 1) / lanes;
-      workers_[lane].lane = lane;
-      for (std::size_t i = first; i < last; ++i)
-        spheres_.calendar.add(lane, {spheres_.bodies[i].next, static_cast<ParticleIndex>(i)});
-    }
+    pool.for_each_block(zones, [&](std::size_t zone) {
+      workers_[zone].lane = zone;
+      for (std::size_t i = size() * zone / zones; i < size() * (zone + 1) / zones; ++i)
+        spheres_.calendar.add(zone, {spheres_.bodies[i].next, static_cast<ParticleIndex>(i)});
+    });
   }
 
   Zone zone_from(std::size_t first, std::size_t last) const {
@@ -210,17 +212,34 @@ private:
     return {static_cast<ParticleIndex>(first % all), static_cast<ParticleIndex>(last - first),
             static_cast<ParticleIndex>(all)};
   }
-  Zone first_zone(std::size_t lane) const {
-    return zone_from(size() * lane / workers_.size(), size() * (lane + 1) / workers_.size());
+  /// Spheres about a border whose first turn is noted: some layers, more than the second turn ever gets to.
+  std::size_t noted_stretch() const {
+    const double layer = std::pow(static_cast<double>(size()), 2.0 / 3);
+    return std::min(static_cast<std::size_t>(6 * layer), size() / (2 * workers_.size()));
   }
+
+  void set_first_zone(Worker& w) const {
+    w.zone = zone_from(size() * w.lane / workers_.size(), size() * (w.lane + 1) / workers_.size());
+    w.free_begin = 0;
+    w.free_end = w.zone.count;
+    const auto noted = static_cast<ParticleIndex>(noted_stretch());
+    w.inner_begin = noted;
+    w.inner_end = w.zone.count - noted;
+  }
+
   /// Half a zone further on.
-  Zone second_zone(std::size_t lane) const {
+  void set_second_zone(Worker& w, std::size_t lane) const {
     const std::size_t half = size() / (2 * workers_.size());
-    return zone_from(size() * lane / workers_.size() + half, size() * (lane + 1) / workers_.size() + half);
+    const std::size_t first = size() * lane / workers_.size() + half;
+    const std::size_t border = size() * (lane + 1) / workers_.size();
+    w.zone = zone_from(first, border + half);
+    const auto noted = static_cast<ParticleIndex>(noted_stretch()),
+               middle = static_cast<ParticleIndex>(border - first);
+    w.inner_begin = middle - std::min(noted, middle);
+    w.inner_end = std::min(middle + noted, w.zone.count);
   }
 
   void pass_window(double end, core::ThreadPool& pool) {
-    ++spheres_.window;
     open(alone_, Worker::Turn::alone, now_, end);
     alone_.sudden.clear();
     const std::size_t lanes = workers_.size();
@@ -232,7 +251,7 @@ private:
     else
       pool.for_each_block(lanes, [&](std::size_t lane) {
         open(workers_[lane], Worker::Turn::first, now_, end);
-        workers_[lane].zone = first_zone(lane);
+        set_first_zone(workers_[lane]);
         collect(workers_[lane]);
       });
     if (shared)
@@ -242,15 +261,13 @@ private:
     if (!shared || !share(end, pool)) {
       if (shared)
         gather_due();
-      std::sort(alone_.due.begin(), alone_.due.end());
+      sort_due(alone_);
       work_through(alone_);
-      for (std::size_t lane = 0; lane < lanes; ++lane)
-        spheres_.calendar.close_today(lane);
     }
     close_window(end);
   }
 
-  void open(Worker& w, Worker::Turn turn, double now, double end) const {
+  void open(Worker& w, Worker::Turn turn, double now, double end) {
     w.turn = turn;
     w.now = now;
     w.end = end;
@@ -258,30 +275,40 @@ private:
     w.due.clear();
     w.leaving.clear();
     w.put_off.clear();
-    w.saved.clear();
+    for (const ParticleIndex i : w.waiting)
+      spheres_.waiting[i] = 0;
+    w.waiting.clear();
+    w.saved_events.clear();
+    w.saved_paths.clear();
     w.sums = {};
     w.conflict = false;
   }
 
-  /// Takes today's appointments that are not out of date: those of the worker's zone, or all if it is alone.
+  /// Takes today's spheres that are due: all of them, or those of the worker's zone. Its lane of the calendar has none
+  /// of another zone.
   void collect(Worker& w) {
-    const auto take = [&](std::size_t from) {
-      const std::vector<Appointment>& today = spheres_.calendar.today_of(from);
-      for (std::size_t k = 0; k < today.size(); ++k) {
-        if (k + 16 < today.size())
-          __builtin_prefetch(&spheres_.bodies[today[k + 16].sphere], 1);
-        const Appointment& a = today[k];
-        if (a.time >= w.end || (w.turn == Worker::Turn::first && !w.zone.holds(a.sphere)) ||
-            spheres_.bodies[a.sphere].next != a.time)
-          continue;
-        if (spheres_.partners[a.sphere] == SphereCollisions::own_shell)
-          w.leaving.push_back(a.sphere);
-        else
-          w.due.push_back(a);
-      }
-    };
-    for (std::size_t from = 0; from < workers_.size(); ++from)
-      take(from);
+    if (w.turn == Worker::Turn::first)
+      collect(w, w.lane, true);
+    for (std::size_t lane = w.turn == Worker::Turn::first ? workers_.size() : 0;
+         lane < spheres_.calendar.lanes(); ++lane)
+      collect(w, lane, w.turn != Worker::Turn::first);
+  }
+
+  /// @param all  whether the zone does not matter
+  void collect(Worker& w, std::size_t lane, bool all) {
+    constexpr std::size_t ahead = 16;
+    const std::vector<ParticleIndex>& today = spheres_.calendar.today_of(lane);
+    for (std::size_t k = 0; k < today.size(); ++k) {
+      if (k + ahead < today.size() && (all || w.zone.holds(today[k + ahead])))
+        __builtin_prefetch(&spheres_.bodies[today[k + ahead]], 1);
+      const ParticleIndex i = today[k];
+      if (!(all || w.zone.holds(i)) || spheres_.bodies[i].next >= w.end)
+        continue;
+      if (spheres_.partners[i] == SphereCollisions::own_shell)
+        w.leaving.push_back(i);
+      else
+        w.due.push_back({spheres_.bodies[i].next, i});
+    }
   }
 
   /// Spheres that would reach their shells in this window get new ones at its start, in the order of their numbers.
@@ -296,10 +323,14 @@ private:
     }
   }
 
+  static void sort_due(Worker& w) { sort_by_time(w.due, w.now, w.per_window, w.scratch, w.ends); }
+
   void work_through(Worker& w) {
     const std::uint64_t many = 1000 + 64 * static_cast<std::uint64_t>(events_per_window());
     double looked = w.now;
     std::uint64_t next_look = many;
+    for (std::ptrdiff_t k = -SphereCollisions::reach; k < 0; ++k)
+      spheres_.fetch_ahead(w.due, k);
     for (std::size_t next = 0; !w.conflict;) {
       if (w.sums.events > next_look) {
         // Far more events than expected: does time pass at all? Threads leave that question to one of them.
@@ -312,8 +343,7 @@ private:
         w.sudden.pop_back();
         spheres_.handle(w, appointment);
       } else if (next < w.due.size()) {
-
-        spheres_.fetch_ahead(w.due, next);
+        spheres_.fetch_ahead(w.due, static_cast<std::ptrdiff_t>(next));
         spheres_.handle(w, w.due[next++]);
       } else
         return;
@@ -330,24 +360,23 @@ private:
       for (const Appointment& a : alone_.sudden)
         if (w.zone.holds(a.sphere))
           w.due.push_back(a);
-      std::sort(w.due.begin(), w.due.end());
+      sort_due(w);
       work_through(w);
     });
     bool bad = std::any_of(workers_.begin(), workers_.end(), in_conflict);
     second_.resize(lanes);
     if (!bad)
       pool.for_each_block(lanes, [&](std::size_t lane) {
-        spheres_.calendar.close_today(lane);
         Worker& w = second_[lane];
         open(w, Worker::Turn::second, now_, end);
         w.sudden.clear();
-        w.lane = lane;
-        w.zone = second_zone(lane);
+        w.lane = lanes + lane;
+        set_second_zone(w, lane);
         for (const Worker& first : workers_)
           for (const Appointment& a : first.put_off)
             if (w.zone.holds(a.sphere))
               w.due.push_back(a);
-        std::sort(w.due.begin(), w.due.end());
+        sort_due(w);
         work_through(w);
       });
     if (!bad && std::any_of(second_.begin(), second_.end(), in_conflict)) {
@@ -379,11 +408,14 @@ private:
   }
 
   void put_back(std::vector<Worker>& workers) {
-    for (Worker& w : workers)
-      for (auto saved = w.saved.rbegin(); saved != w.saved.rend(); ++saved) {
-        spheres_.partners[saved->sphere] = saved->partner;
-        spheres_.bodies[saved->sphere] = saved->body;
+    for (Worker& w : workers) {
+      for (auto saved = w.saved_events.rbegin(); saved != w.saved_events.rend(); ++saved)
+        spheres_.set_event(saved->sphere, {saved->next, saved->partner});
+      for (auto saved = w.saved_paths.rbegin(); saved != w.saved_paths.rend(); ++saved) {
+        spheres_.bodies[saved->sphere].origin = saved->origin;
+        spheres_.bodies[saved->sphere].velocity = saved->velocity;
       }
+    }
   }
 
   /// All that is due in the window, for one worker.

@@ -38,13 +38,14 @@ public:
 
   const SphereArray<Shell>& shells() const { return shells_; }
 
-  /// Asks for the memory of shell() and of all but long lists.
-  void fetch(ParticleIndex sphere) const {
+  /// Asks for the memory of shell() and of all but long lists. Always inlined, as all such functions are: GCC takes a
+  /// call that only prefetches for one without effect, and leaves it out.
+  [[gnu::always_inline]] void fetch(ParticleIndex sphere) const {
     __builtin_prefetch(&lists_[sphere]);
     __builtin_prefetch(&shells_[sphere]);
   }
   /// Asks for a long list; reads what fetch() asked for.
-  void fetch_long(ParticleIndex sphere) const {
+  [[gnu::always_inline]] void fetch_long(ParticleIndex sphere) const {
     const List& list = lists_[sphere];
     if (list.capacity > own_entries)
       for (std::uint32_t k = 0; k < list.count; k += 16)

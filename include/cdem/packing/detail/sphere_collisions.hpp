@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace cdem::packing::detail {
@@ -20,17 +21,23 @@ namespace cdem::packing::detail {
 struct Zone {
   ParticleIndex first = 0, count = 0, all = 0;
 
-  bool holds(ParticleIndex sphere) const {
-    return (sphere >= first ? sphere - first : sphere + (all - first)) < count;
+  /// How many spheres come before it, counted from the zone's first.
+  ParticleIndex place(ParticleIndex sphere) const {
+    return sphere >= first ? sphere - first : sphere + (all - first);
   }
+  bool holds(ParticleIndex sphere) const { return place(sphere) < count; }
 };
 
 /// One thread's work in a window of time.
-struct Worker {
-  /// What has to be put back if the window is to be done again.
-  struct Saved {
+struct alignas(128) Worker { // none shares a cache line with another
+  // What has to be put back if the window is to be done again.
+  struct SavedEvent {
+    double next;
     ParticleIndex sphere, partner;
-    Body body;
+  };
+  struct SavedPath {
+    Vec3 origin, velocity;
+    ParticleIndex sphere;
   };
   /// Alone: every event in the order of time. First: events whose surroundings are in the zone, the others are put
   /// off. Second: those that were put off, in a zone about the border of two of the first.
@@ -39,14 +46,23 @@ struct Worker {
   Turn turn = Turn::alone;
   std::size_t lane = 0; ///< of the calendar
   Zone zone;
+  /// First turn: nothing waits from the one place of the zone to before the other.
+  ParticleIndex free_begin = 0, free_end = 0;
+  /// First turn: an event between these places needs no note. Second turn: there all that happened was noted.
+  ParticleIndex inner_begin = 0, inner_end = 0;
+  bool noted = false;                 ///< whether the event in hand needs a note for the second turn
   double now = 0, end = 0;            ///< time of the event in hand; end of the window
   double per_window = 0;              ///< 1 / length of the window
   std::vector<Appointment> due;       ///< appointments of the window, sorted
   std::vector<Appointment> sudden;    ///< the same that were made within it: a heap
   std::vector<Appointment> put_off;   ///< left to the second turn
+  std::vector<ParticleIndex> waiting; ///< spheres put off, and their neighbours
   std::vector<ParticleIndex> leaving; ///< spheres that reach their shell in this window
-  std::vector<Saved> saved;
-  std::vector<double> times; ///< scratch
+  std::vector<SavedEvent> saved_events;
+  std::vector<SavedPath> saved_paths;
+  std::vector<double> times;        ///< scratch of predictions
+  std::vector<Appointment> scratch; ///< of sorting
+  std::vector<std::uint32_t> ends;  ///< of sorting
   WindowSums sums;
   bool conflict = false; ///< the window has to be done again by one thread
 };
@@ -83,6 +99,7 @@ public:
     if (bodies[i].next != appointment.time)
       return;
     w.now = std::max(w.now, appointment.time);
+    w.noted = false;
     if (w.turn == Worker::Turn::first && !may_be_first(w, i))
       return put_off(w, appointment);
     ParticleIndex partner = partners[i];
@@ -91,7 +108,7 @@ public:
         return w.turn == Worker::Turn::first ? put_off(w, appointment) : void(w.conflict = true);
       if (bodies[partner].next != appointment.time || partners[partner] != i) {
         if (w.turn == Worker::Turn::first)
-          touched[partner] = w.now;
+          note(w, partner);
         partner = second_look;
       } else if (w.turn == Worker::Turn::first && !may_be_first(w, partner))
         return put_off(w, appointment);
@@ -152,33 +169,42 @@ public:
 
   /// Asks for the memory that the appointments after the k-th are going to read: in steps, since each place is known
   /// from what was read at another.
-  void fetch_ahead(const std::vector<Appointment>& appointments, std::size_t k) const {
-    if (k + 24 < appointments.size()) {
-      const ParticleIndex i = appointments[k + 24].sphere;
+  /// @param k  from -reach on, so that the first appointments are asked for as well
+  [[gnu::always_inline]] void fetch_ahead(const std::vector<Appointment>& appointments,
+                                          std::ptrdiff_t k) const {
+    const auto count = static_cast<std::ptrdiff_t>(appointments.size());
+    const auto has = [&](std::ptrdiff_t place) { return place >= 0 && place < count; };
+    const auto sphere = [&](std::ptrdiff_t place) {
+      return appointments[static_cast<std::size_t>(place)].sphere;
+    };
+    if (has(k + reach)) {
+      const ParticleIndex i = sphere(k + reach);
       __builtin_prefetch(&partners[i], 1);
       __builtin_prefetch(&bodies[i], 1);
       neighbours.fetch(i);
     }
-    if (k + 16 < appointments.size()) {
-      const ParticleIndex i = appointments[k + 16].sphere;
+    if (has(k + 16)) {
+      const ParticleIndex i = sphere(k + 16);
       neighbours.fetch_long(i);
       if (const ParticleIndex j = partners[i]; is_sphere(j) && j > i)
         neighbours.fetch(j);
     }
-    if (k + 10 < appointments.size()) {
-      const ParticleIndex i = appointments[k + 10].sphere, j = partners[i];
+    if (has(k + 10)) {
+      const ParticleIndex i = sphere(k + 10), j = partners[i];
       if (!is_sphere(j) || j > i) { // else the partner's appointment does it
         fetch_surroundings(i);
         if (is_sphere(j))
           neighbours.fetch_long(j);
       }
     }
-    if (k + 6 < appointments.size()) {
-      const ParticleIndex i = appointments[k + 6].sphere, j = partners[i];
+    if (has(k + 6)) {
+      const ParticleIndex i = sphere(k + 6), j = partners[i];
       if (is_sphere(j) && j > i)
         fetch_surroundings(j);
     }
   }
+
+  static constexpr std::ptrdiff_t reach = 24; ///< of fetch_ahead()
 
   SphereArray<Body> bodies;
   SphereArray<ParticleIndex> partners; ///< of the next events
@@ -186,33 +212,61 @@ public:
   EventCalendar calendar;
   double scale = 0, growth = 0; ///< mean diameter at time 0, and its rate
   double skin = 0;              ///< room in a new shell
-  std::uint32_t window = 0;     ///< number of the window
   /// [spheres] last time at which a first turn wrote or weighed a sphere's event; empty with one thread
   SphereArray<double> touched;
-  SphereArray<std::uint32_t> waiting; ///< [spheres] last window in which a sphere or a neighbour was put off
+  SphereArray<std::uint8_t> waiting; ///< [spheres] whether a sphere or a neighbour was put off in this window
 
 private:
-  void fetch_surroundings(ParticleIndex i) const {
+  [[gnu::always_inline]] void fetch_surroundings(ParticleIndex i) const {
     for (const ParticleIndex j : neighbours.of(i))
       __builtin_prefetch(&bodies[j], 1);
   }
 
   /// Whether all that an event of the sphere reads and writes is in the zone and waits for nothing.
-  bool may_be_first(const Worker& w, ParticleIndex i) const {
-    if (!w.zone.holds(i))
-      return false;
-    bool may = true;
-    for (const ParticleIndex j : neighbours.of(i))
-      may = may && w.zone.holds(j) && waiting[j] != window;
-    return may;
+  bool may_be_first(Worker& w, ParticleIndex i) const {
+    const std::span<const ParticleIndex> list = neighbours.of(i);
+    const auto are_between = [&](ParticleIndex begin, ParticleIndex end) { // places of the zone
+      begin += w.zone.first;
+      end += w.zone.first;
+      ParticleIndex furthest = i - begin;
+      for (const ParticleIndex j : list)
+        furthest = std::max(furthest, j - begin);
+      return begin < end && furthest < end - begin;
+    };
+    // Far from the borders, as nearly all are, there is nothing more to read.
+    if (are_between(std::max(w.inner_begin, w.free_begin), std::min(w.inner_end, w.free_end)))
+      return true;
+    w.noted = true;
+    if (are_between(w.free_begin, w.free_end))
+      return true;
+    return are_between(0, w.zone.count) &&
+           std::none_of(list.begin(), list.end(), [&](ParticleIndex j) { return waiting[j] != 0; });
   }
 
   void put_off(Worker& w, const Appointment& appointment) {
     w.put_off.push_back(appointment);
-    waiting[appointment.sphere] = window;
+    wait(w, appointment.sphere);
     for (const ParticleIndex j : neighbours.of(appointment.sphere))
       if (w.zone.holds(j))
-        waiting[j] = window;
+        wait(w, j);
+  }
+
+  void wait(Worker& w, ParticleIndex i) {
+    if (std::exchange(waiting[i], std::uint8_t{1}) != 0)
+      return;
+    w.waiting.push_back(i);
+    const ParticleIndex place = w.zone.place(i);
+    if (place < w.zone.count / 2)
+      w.free_begin = std::max(w.free_begin, place + 1);
+    else
+      w.free_end = std::min(w.free_end, place);
+  }
+
+  /// Notes for the second turn that a sphere's event was written or weighed now.
+  void note(const Worker& w, ParticleIndex i) {
+    const ParticleIndex place = w.zone.place(i);
+    if (place < w.inner_begin || place >= w.inner_end)
+      touched[i] = w.now;
   }
 
   /// Saves what the event is going to change. @return false, and a conflict, if the event cannot be handled here
@@ -223,26 +277,29 @@ private:
       w.conflict = true;
       return false;
     }
-    save(w, i);
+    save(w, i, true);
     if (is_sphere(partner))
-      save(w, partner);
+      save(w, partner, true);
     return true;
   }
 
   /// Whether the surroundings are in the zone and have done nothing in the first turn that was later than now.
   bool may_be_second(const Worker& w, ParticleIndex i) const {
-    if (!w.zone.holds(i) || touched[i] >= w.now)
-      return false;
-    for (const ParticleIndex j : neighbours.of(i))
-      if (!w.zone.holds(j) || touched[j] >= w.now)
-        return false;
-    return true;
+    const auto untouched = [&](ParticleIndex j) {
+      const ParticleIndex place = w.zone.place(j);
+      return place >= w.inner_begin && place < w.inner_end && touched[j] < w.now;
+    };
+    const std::span<const ParticleIndex> list = neighbours.of(i);
+    return untouched(i) && std::all_of(list.begin(), list.end(), untouched);
   }
 
-  void save(Worker& w, ParticleIndex i) {
-    w.saved.push_back({i, partners[i], bodies[i]});
+  /// @param moves  whether the sphere's path will change too
+  void save(Worker& w, ParticleIndex i, bool moves) {
+    w.saved_events.push_back({bodies[i].next, i, partners[i]});
+    if (moves)
+      w.saved_paths.push_back({bodies[i].origin, bodies[i].velocity, i});
     if (w.turn == Worker::Turn::first)
-      touched[i] = w.now;
+      note(w, i);
   }
 
   /// Two spheres of equal mass: the relative normal velocity v_n becomes 2 G - v_n.
@@ -309,18 +366,18 @@ private:
   /// Finds a sphere's next event and takes a partner away from its former one.
   void predict(Worker& w, ParticleIndex i) {
     const Event next = find_next(i, w.now, w.times);
-    if (w.turn == Worker::Turn::first) {
+    if (w.noted) {
       const std::span<const ParticleIndex> list = neighbours.of(i);
       for (std::size_t k = 0; k < list.size(); ++k)
         if (w.now + w.times[k] <= next.time) // whose events were weighed
-          touched[list[k]] = w.now;
+          note(w, list[k]);
     }
     if (!(next.time < bodies[i].next))
       return;
     schedule(w, i, next);
     if (is_sphere(next.partner)) {
       if (w.turn != Worker::Turn::alone)
-        save(w, next.partner);
+        save(w, next.partner, false);
       schedule(w, next.partner, {next.time, i});
     }
   }
