@@ -286,6 +286,7 @@ private:
     if constexpr (EvaluatesBlockwise<Forces>) {
       return problem.forces.evaluate_blockwise(displacement, Sums{}, pool, use);
     } else {
+      force.resize(displacement.size());
       accept(problem, displacement, force, pool);
       return core::parallel_sum(pool, displacement.size(), Sums{}, [&](std::size_t begin, std::size_t end) {
         return use(begin, end, force.data() + begin);
