@@ -51,7 +51,7 @@ public:
   /// @param rest        [bonds] where the bonds lie
   /// @param resistance  [bonds] H, in the local frames
   BasicBondTangent(std::shared_ptr<const detail::BondEnds> ends, std::vector<detail::RestBond> rest,
-              std::vector<Matrix6> resistance)
+                   std::vector<Matrix6> resistance)
       : ends_(std::move(ends)), rest_(std::move(rest)), resistance_(std::move(resistance)) {}
 
   std::size_t particle_count() const noexcept { return ends_->particle_count(); }
