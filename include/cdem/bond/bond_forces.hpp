@@ -59,18 +59,20 @@ public:
   using State = StateOf<Law>;
   static constexpr bool finite_rotation = TurnsWithItsEnds<Law>;
   static constexpr bool has_state = HasState<Law>;
+  /// What is lost follows from the load along the path, which is remembered.
+  static constexpr bool follows_path = has_state && !GivesLoss<Law>;
 
   /// All that a body remembers beside its motion: what a checkpoint keeps.
   struct Memory {
     std::vector<State> state; ///< [bonds]; empty without one
-    /// [bonds] stretch, shear t, b, twist, bend t, b at the last advance, and the load on it; empty without a state
+    /// [bonds] stretch, shear t, b, twist, bend t, b at the last advance, and the load on it; empty if nothing is lost or
+    /// the law says how much
     std::vector<Deformation<>> deformation;
     std::vector<ChannelLoad<>> load;
-    std::vector<double> energy; ///< [bonds] J stored at the last advance; empty without a state
+    std::vector<double> energy;                ///< [bonds] J stored at the last advance; empty likewise
     std::vector<detail::Rotation> orientation; ///< [particles]; empty in small motion
     std::vector<Vec3> angle; ///< [particles] rad, sum of the rotations so far; empty likewise
     double dissipated = 0;   ///< J
-    bool begun = false;
   };
 
   /// @throws core::InvalidInput for particles, a network or phases that do not fit together, bonds that are not sorted as
@@ -90,9 +92,13 @@ public:
     if constexpr (has_state) {
       memory_.state.resize(network.size());
       next_state_.resize(network.size());
+    }
+    if constexpr (follows_path) { // from rest
       memory_.deformation.resize(network.size());
-      memory_.load.resize(network.size());
-      memory_.energy.resize(network.size());
+      for (BondIndex b = 0; b < network.size(); ++b) {
+        memory_.load.push_back(Response<Law>::load(law_, prepared_[b], {}, {}));
+        memory_.energy.push_back(Response<Law>::energy(law_, prepared_[b], {}, {}));
+      }
     }
     if constexpr (finite_rotation) {
       memory_.orientation.resize(particles.size());
@@ -122,7 +128,8 @@ public:
   }
 
   /// Internal forces at a displacement that is accepted: states and orientations follow it, and what was lost on the way
-  /// is booked, the path between two advances taken straight and the load along it as the mean of its ends'.
+  /// is booked: as the law's loss() says, else with the path between two advances (the first from rest) taken straight
+  /// and the load along it as the mean of its ends'.
   ///
   /// @complexity as evaluate()
   void advance(const Field& displacement, Field& force,
@@ -149,7 +156,6 @@ public:
       memory_.state.swap(next_state_);
     for (const double sum : lost)
       memory_.dissipated += sum;
-    memory_.begun = true;
     if constexpr (finite_rotation) {
       memory_.orientation.swap(orientation);
       core::parallel_for(pool, particle_count(), [&](std::size_t begin, std::size_t end) {
@@ -369,20 +375,21 @@ private:
     }
   }
 
-  /// Energy lost by bond `b` since the last advance, J; what is known of it becomes that of now.
+  /// Energy lost by bond `b` since the last advance, J; what is known of its path becomes that of now.
   double book(BondIndex b, const Deformation<>& deformation, const ChannelLoad<>& load, const State& state) {
-    const double energy = Response<Law>::energy(law_, prepared_[b], deformation, state);
-    double lost = 0;
-    if (memory_.begun) {
-      lost = memory_.energy[b] - energy;
+    if constexpr (follows_path) {
+      const double energy = Response<Law>::energy(law_, prepared_[b], deformation, state);
+      double lost = memory_.energy[b] - energy;
       for (std::size_t k = 0; k < 6; ++k)
         lost += 0.5 * (detail::component(load, k) + detail::component(memory_.load[b], k)) *
                 (detail::component(deformation, k) - detail::component(memory_.deformation[b], k));
+      memory_.energy[b] = energy;
+      memory_.load[b] = load;
+      memory_.deformation[b] = deformation;
+      return lost;
+    } else {
+      return law_.loss(prepared_[b], deformation, memory_.state[b], state);
     }
-    memory_.energy[b] = energy;
-    memory_.load[b] = load;
-    memory_.deformation[b] = deformation;
-    return lost;
   }
 
   template <class LoadOf>
