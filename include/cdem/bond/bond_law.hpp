@@ -226,15 +226,6 @@ concept ForceLaw = GivesLoad<L> && GivesEnergy<L, double> && KeepsItsState<L>;
 template <class L>
 concept EnergyLaw = GivesEnergy<L, double> && GivesEnergy<L, Differentiable> && KeepsItsState<L>;
 
-/// `law.loss(prepared, deformation, before, after)`: energy lost as the state changes at a deformation, J. Not needed; a
-/// law that keeps its state but for single events says so with it, and saves the path of each bond being remembered.
-template <class L>
-concept GivesLoss = HasState<L> &&
-    requires(const L& law, const PreparedOf<L>& prepared, const Deformation<>& deformation,
-             const StateOf<L>& before, const StateOf<L>& after) {
-  { law.loss(prepared, deformation, before, after) } -> std::same_as<double>;
-};
-
 /// `law.section_radius(geometry)` in m: the bond is a beam or bar of circular section. Stress criteria need it.
 template <class L>
 concept GivesSectionRadius = requires(const L& law, const BondGeometry& geometry) {

@@ -7,6 +7,7 @@
 #include <cdem/bond/detail/wrapped_law.hpp>
 #include <cdem/bond/failure_criterion.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -69,17 +70,6 @@ public:
     return state.broken ? Matrix6(Matrix6::Zero())
                         : Inner::tangent(this->law(), prepared.inner, d, state.inner, length);
   }
-  double loss(const Prepared& prepared, const Deformation<>& d, const State& before, const State& after) const
-      requires(!HasState<Law> || GivesLoss<Law>) {
-    if (before.broken)
-      return 0;
-    double lost = 0;
-    if constexpr (HasState<Law>)
-      lost += this->law().loss(prepared.inner, d, before.inner, after.inner);
-    if (after.broken)
-      lost += Inner::energy(this->law(), prepared.inner, d, after.inner);
-    return lost;
-  }
 
 private:
   Criterion criterion_;
@@ -104,10 +94,9 @@ requires requires(const Forces& forces) {
   forces.states();
 }
 std::size_t count_broken(const Forces& forces) {
-  std::size_t count = 0;
-  for (const auto& state : forces.states())
-    count += is_broken(state) ? 1 : 0;
-  return count;
+  const auto states = forces.states();
+  return static_cast<std::size_t>(
+      std::count_if(states.begin(), states.end(), [](const auto& state) { return is_broken(state); }));
 }
 
 } // namespace cdem::bond

@@ -86,10 +86,6 @@ public:
   void update(const Prepared& prepared, const Deformation<>& d, State& state) const requires HasState<Law> {
     Inner::update(this->law(), prepared.inner, d, state);
   }
-  double loss(const Prepared& prepared, const Deformation<>& d, const State& before,
-              const State& after) const requires GivesLoss<Law> {
-    return prepared.cohesion * this->law().loss(prepared.inner, d, before, after);
-  }
 
 private:
   PhasePairs cohesion_;

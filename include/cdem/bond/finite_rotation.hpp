@@ -43,10 +43,6 @@ public:
   void update(const Prepared& prepared, const Deformation<>& d, State& state) const requires HasState<Law> {
     Inner::update(this->law(), prepared, d, state);
   }
-  double loss(const Prepared& prepared, const Deformation<>& d, const State& before,
-              const State& after) const requires GivesLoss<Law> {
-    return this->law().loss(prepared, d, before, after);
-  }
 };
 
 static_assert(BondLaw<FiniteRotation<Beam<>>>);

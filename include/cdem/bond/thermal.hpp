@@ -68,10 +68,6 @@ public:
   void update(const Prepared& prepared, const Deformation<>& d, State& state) const requires HasState<Law> {
     Inner::update(this->law(), prepared.inner, felt(prepared, d), state);
   }
-  double loss(const Prepared& prepared, const Deformation<>& d, const State& before,
-              const State& after) const requires GivesLoss<Law> {
-    return this->law().loss(prepared.inner, felt(prepared, d), before, after);
-  }
 
   /// @throws core::InvalidInput if a phase has no expansion, or temperatures are not one for each particle
   void validate(const particles::ParticleSet& particles) const {

@@ -59,10 +59,6 @@ public:
   void update(const Prepared& prepared, const Deformation<>& d, State& state) const requires HasState<Law> {
     Inner::update(this->law(), prepared.inner, felt(prepared, d), state);
   }
-  double loss(const Prepared& prepared, const Deformation<>& d, const State& before,
-              const State& after) const requires GivesLoss<Law> {
-    return this->law().loss(prepared.inner, felt(prepared, d), before, after);
-  }
 
 private:
   static Deformation<> felt(const Prepared& prepared, const Deformation<>& d) {
