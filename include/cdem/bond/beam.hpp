@@ -31,8 +31,8 @@ public:
 
   /// Stiffness of a beam between two particles. @complexity O(1)
   ChannelStiffness stiffness(const BondGeometry& bond) const {
-    const Material& material = table_.between(bond.phase_first, bond.phase_second);
-    const double a = material.radius_ratio * 0.5 * (bond.radius_first + bond.radius_second);
+    const Material& material = this->material(bond);
+    const double a = section_radius(bond);
     const double area = std::numbers::pi * a * a;
     const double second_moment = 0.25 * area * a * a;
     const double bending = material.youngs_modulus * second_moment / bond.length;
@@ -40,6 +40,15 @@ public:
             .tangential = 12 * bending / (bond.length * bond.length),
             .torsion = 2 * material.shear_modulus() * second_moment / bond.length,
             .bending = bending};
+  }
+
+  /// Material of a bond: that of its phase, or mixed across an interface.
+  const Material& material(const BondGeometry& bond) const {
+    return table_.between(bond.phase_first, bond.phase_second);
+  }
+  /// Radius a of the beam, m.
+  double section_radius(const BondGeometry& bond) const {
+    return material(bond).section_radius(bond.radius_first, bond.radius_second);
   }
 
   /// @throws core::InvalidInput if a particle's phase has no material

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <memory>
 #include <span>
 #include <string>
@@ -63,14 +64,9 @@ public:
   /// All that a body remembers beside its motion: what a checkpoint keeps.
   struct Memory {
     std::vector<State> state; ///< [bonds]; empty without one
-    /// [bonds] stretch, shear t, b, twist, bend t, b at the last advance, and the load on it; empty without a state
-    std::vector<Deformation<>> deformation;
-    std::vector<ChannelLoad<>> load;
-    std::vector<double> energy; ///< [bonds] J stored at the last advance; empty without a state
+    Field displacement;       ///< [particles] at the last advance(); at rest before the first
     std::vector<detail::Rotation> orientation; ///< [particles]; empty in small motion
-    std::vector<Vec3> angle; ///< [particles] rad, sum of the rotations so far; empty likewise
-    double dissipated = 0;   ///< J
-    bool begun = false;
+    double dissipated = 0;                     ///< J
   };
 
   /// @throws core::InvalidInput for particles, a network or phases that do not fit together, bonds that are not sorted as
@@ -90,14 +86,11 @@ public:
     if constexpr (has_state) {
       memory_.state.resize(network.size());
       next_state_.resize(network.size());
-      memory_.deformation.resize(network.size());
-      memory_.load.resize(network.size());
-      memory_.energy.resize(network.size());
     }
-    if constexpr (finite_rotation) {
+    if constexpr (has_state || finite_rotation)
+      memory_.displacement.resize(particles.size());
+    if constexpr (finite_rotation)
       memory_.orientation.resize(particles.size());
-      memory_.angle.assign(particles.size(), Vec3::Zero());
-    }
   }
 
   std::size_t particle_count() const noexcept { return ends_->particle_count(); }
@@ -121,8 +114,9 @@ public:
     });
   }
 
-  /// Internal forces at a displacement that is accepted: states and orientations follow it, and what was lost on the way
-  /// is booked, the path between two advances taken straight and the load along it as the mean of its ends'.
+  /// Internal forces at a displacement that is accepted: states and orientations follow it, and what bonds lost whose
+  /// state changed is booked, the path since the last advance (the first: from rest) taken straight and the load along it
+  /// as the mean of its ends'. A bond whose state does not change is elastic.
   ///
   /// @complexity as evaluate()
   void advance(const Field& displacement, Field& force,
@@ -141,7 +135,7 @@ public:
                   if constexpr (has_state)
                     if (ends_->first(b) >= begin) { // else the block before books it
                       next_state_[b] = state;
-                      lost[block] += book(b, d, load, state);
+                      lost[block] += lost_by(b, d, load, state);
                     }
                 });
     });
@@ -149,14 +143,13 @@ public:
       memory_.state.swap(next_state_);
     for (const double sum : lost)
       memory_.dissipated += sum;
-    memory_.begun = true;
-    if constexpr (finite_rotation) {
+    if constexpr (finite_rotation)
       memory_.orientation.swap(orientation);
-      core::parallel_for(pool, particle_count(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          memory_.angle[i] = displacement[i].angular();
-      });
-    }
+    core::parallel_for(pool, particle_count(), [&](std::size_t begin, std::size_t end) {
+      std::copy(displacement.begin() + static_cast<std::ptrdiff_t>(begin),
+                displacement.begin() + static_cast<std::ptrdiff_t>(end),
+                memory_.displacement.begin() + static_cast<std::ptrdiff_t>(begin));
+    });
   }
 
   /// Energy stored at a displacement tried from the last advance(), J. @complexity O(bonds)
@@ -315,7 +308,8 @@ private:
     return orientation;
   }
   detail::Rotation orientation_at(std::size_t i, const Field& displacement) const {
-    return detail::Rotation::by(displacement[i].angular() - memory_.angle[i]).after(memory_.orientation[i]);
+    return detail::Rotation::by(displacement[i].angular() - memory_.displacement[i].angular())
+        .after(memory_.orientation[i]);
   }
 
   detail::EndsSource source(const Field& displacement,
@@ -369,20 +363,19 @@ private:
     }
   }
 
-  /// Energy lost by bond `b` since the last advance, J; what is known of it becomes that of now.
-  double book(BondIndex b, const Deformation<>& deformation, const ChannelLoad<>& load, const State& state) {
-    const double energy = Response<Law>::energy(law_, prepared_[b], deformation, state);
-    double lost = 0;
-    if (memory_.begun) {
-      lost = memory_.energy[b] - energy;
-      for (std::size_t k = 0; k < 6; ++k)
-        lost += 0.5 * (detail::component(load, k) + detail::component(memory_.load[b], k)) *
-                (detail::component(deformation, k) - detail::component(memory_.deformation[b], k));
-    }
-    memory_.energy[b] = energy;
-    memory_.load[b] = load;
-    memory_.deformation[b] = deformation;
-    return lost;
+  /// Energy lost by bond `b` since the last advance, J: none where its state is as it was.
+  double lost_by(BondIndex b, const Deformation<>& deformation, const ChannelLoad<>& load,
+                 const State& state) const {
+    const State& before = memory_.state[b];
+    if (std::memcmp(&state, &before, sizeof(State)) == 0)
+      return 0;
+    const Deformation<> start =
+        detail::deformation_from(motion_of(b, memory_.displacement, memory_.orientation).deformation);
+    const Vector6 mean = 0.5 * (detail::vector_of(load) +
+                                detail::vector_of(Response<Law>::load(law_, prepared_[b], start, before)));
+    return Response<Law>::energy(law_, prepared_[b], start, before) -
+           Response<Law>::energy(law_, prepared_[b], deformation, state) +
+           mean.dot(detail::vector_of(deformation) - detail::vector_of(start));
   }
 
   template <class LoadOf>

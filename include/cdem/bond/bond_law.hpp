@@ -226,6 +226,12 @@ concept ForceLaw = GivesLoad<L> && GivesEnergy<L, double> && KeepsItsState<L>;
 template <class L>
 concept EnergyLaw = GivesEnergy<L, double> && GivesEnergy<L, Differentiable> && KeepsItsState<L>;
 
+/// `law.section_radius(geometry)` in m: the bond is a beam or bar of circular section. Stress criteria need it.
+template <class L>
+concept GivesSectionRadius = requires(const L& law, const BondGeometry& geometry) {
+  { law.section_radius(geometry) } -> std::same_as<double>;
+};
+
 /// `L::finite_rotation` is true: the bond's frame turns with its ends, however far.
 template <class L>
 concept TurnsWithItsEnds = requires {

@@ -4,7 +4,7 @@
 /// A law seen from the mean rotation of each bond's ends: rotations of any size.
 
 #include <cdem/bond/beam.hpp>
-#include <cdem/bond/response.hpp>
+#include <cdem/bond/detail/wrapped_law.hpp>
 
 #include <utility>
 
@@ -17,35 +17,32 @@ namespace cdem::bond {
 /// energy: detail::FiniteMotion has the equations.
 /// @tparam Law  any bond law; with a small motion the two are the same
 template <BondLaw Law>
-class FiniteRotation {
+class FiniteRotation : public detail::WrappedLaw<Law> {
+  using Base = detail::WrappedLaw<Law>;
+  using Inner = typename Base::Inner;
+
 public:
   static constexpr bool finite_rotation = true;
-  using Inner = Response<Law>;
-  using State = StateOf<Law>;
+  using State = typename Base::State;
   using Prepared = typename Inner::Prepared;
   using Parameters = typename Law::Parameters;
 
-  explicit FiniteRotation(Law law) : law_(std::move(law)) {}
-  explicit FiniteRotation(Parameters parameters) : law_(std::move(parameters)) {}
+  explicit FiniteRotation(Law law) : Base(std::move(law)) {}
+  explicit FiniteRotation(Parameters parameters) : Base(Law(std::move(parameters))) {}
 
-  const Law& law() const noexcept { return law_; }
-  Prepared prepare(const BondGeometry& geometry) const { return Inner::prepare(law_, geometry); }
+  Prepared prepare(const BondGeometry& geometry) const { return Inner::prepare(this->law(), geometry); }
   ChannelLoad<> load(const Prepared& prepared, const Deformation<>& d, const State& state) const {
-    return Inner::load(law_, prepared, d, state);
+    return Inner::load(this->law(), prepared, d, state);
   }
   double energy(const Prepared& prepared, const Deformation<>& d, const State& state) const {
-    return Inner::energy(law_, prepared, d, state);
+    return Inner::energy(this->law(), prepared, d, state);
   }
   Matrix6 tangent(const Prepared& prepared, const Deformation<>& d, const State& state, double length) const {
-    return Inner::tangent(law_, prepared, d, state, length);
+    return Inner::tangent(this->law(), prepared, d, state, length);
   }
-  void update(const Prepared& prepared, const Deformation<>& d, State& state) const requires(HasState<Law>) {
-    Inner::update(law_, prepared, d, state);
+  void update(const Prepared& prepared, const Deformation<>& d, State& state) const requires HasState<Law> {
+    Inner::update(this->law(), prepared, d, state);
   }
-  void validate(const particles::ParticleSet& particles) const { law_.validate(particles); }
-
-private:
-  Law law_;
 };
 
 static_assert(BondLaw<FiniteRotation<Beam<>>>);

@@ -25,6 +25,11 @@ struct Material {
   /// G_mu = E_mu / (2 (1 + nu_mu)), Pa. [L17] section 2.4: it has no influence on the macroscopic moduli.
   double shear_modulus() const { return youngs_modulus / (2 * (1 + poissons_ratio)); }
 
+  /// Radius of the beam between two particles, r_mu (R_i + R_j)/2, m.
+  double section_radius(double radius_first, double radius_second) const {
+    return radius_ratio * 0.5 * (radius_first + radius_second);
+  }
+
   /// @param name  how messages call this material, such as "phase 0"
   /// @throws core::InvalidInput naming the parameter and what is accepted
   void validate(const std::string& name) const {

@@ -37,9 +37,15 @@ public:
   /// Stiffness of the springs between two particles. @complexity O(1)
   ChannelStiffness stiffness(const BondGeometry& bond) const {
     const Material& material = table_.between(bond.phase_first, bond.phase_second);
-    const double a = material.radius_ratio * 0.5 * (bond.radius_first + bond.radius_second);
+    const double a = section_radius(bond);
     const double normal = material.youngs_modulus * std::numbers::pi * a * a / bond.length;
     return {.normal = normal, .tangential = tangential_ratio_ * normal, .torsion = 0, .bending = 0};
+  }
+
+  /// Radius a of the section A, m.
+  double section_radius(const BondGeometry& bond) const {
+    return table_.between(bond.phase_first, bond.phase_second)
+        .section_radius(bond.radius_first, bond.radius_second);
   }
 
   /// @throws core::InvalidInput if a particle's phase has no material

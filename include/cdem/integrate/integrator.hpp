@@ -148,8 +148,8 @@ struct EnergyLedger {
   double kinetic = 0;       ///< sum of m v^2/2 + I w^2/2
   double elastic = 0;       ///< of the bonds
   double external_work = 0; ///< of the prescribed motion (reactions) and of the loads, since the first step
-  double dissipated = 0;    ///< by damping and by the bonds, since the first step
-  double initial = 0;       ///< kinetic and elastic at the first step
+  double dissipated = 0;    ///< by damping since the first step, and by the bonds since they were made
+  double initial = 0;       ///< kinetic and elastic at the first step, and lost by the bonds before it
 
   /// What is missing (below 0: too much), J. For velocity Verlet it falls as the square of the time step.
   double imbalance() const { return initial + external_work - kinetic - elastic - dissipated; }

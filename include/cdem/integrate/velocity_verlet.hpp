@@ -181,6 +181,8 @@ private:
                                          parameters_.damping.beta * motion.velocity[i].component[c];
       });
     accelerate(problem, motion, work, pool, {.advance = 0, .whole = true});
+    if constexpr (BooksDissipation<std::remove_cvref_t<decltype(problem.forces)>>)
+      motion.energy.initial += problem.forces.dissipated_energy(); // what the bonds had lost by then
   }
 
   /// Forces, acceleration and velocity at the displacement; `whole` as in Stage.
