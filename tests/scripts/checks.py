@@ -133,11 +133,11 @@ class CompileFail(Sample):
                      *self.check(self.EXPECT, self.CONCEPT, *self.mine(repaired="char c[80];"), self.CLAIM))
 
     def test_refusal_elsewhere(self):
-        self.refused("not at the user's line", *self.check(self.EXPECT, self.CONCEPT, *self.mine(broken="Unknown c;"),
-                                                            self.CLAIM))
+        self.refused("which is not marked", *self.check(self.EXPECT, self.CONCEPT, *self.mine(broken="Unknown c;"),
+                                                         self.CLAIM))
 
     def test_second_error(self):
-        self.refused("2 errors where one is expected",
+        self.refused("an error at sample.cpp:12, which is not marked",
                      *self.check(self.EXPECT, self.CONCEPT, *self.mine(), self.CLAIM, "#ifndef CDEM_REPAIRED",
                                  "Unknown more;", "#endif"))
 
@@ -151,7 +151,15 @@ class CompileFail(Sample):
 
     def test_file_that_asks_for_nothing(self):
         self.refused("no line '// expect:", *self.check(self.CONCEPT, *self.mine(), self.CLAIM))
-        self.refused("refused here' is expected, 0 found", *self.check(self.EXPECT, self.CONCEPT))
+        self.refused("no line is marked", *self.check(self.EXPECT, self.CONCEPT))
+
+    def test_several_refusals_in_one_file(self):
+        second = ["// expect: Small<long>|T = long", "#ifndef CDEM_REPAIRED", "static_assert(Small<long>); // refused here", "#endif"]
+        both = [self.EXPECT, self.CONCEPT, *self.mine(), self.CLAIM, *second]
+        self.accepted(*self.check(*both))
+        self.refused("0 errors at the user's line", *self.check(*[line.replace("Small<long>);", "true);") for line in both]))
+        self.refused("does not contain 'Tiny'", *self.check(*[line.replace("T = long", "Tiny").replace("Small<long>|", "")
+                                                             for line in both]))
 
 
 class BadOptions(Sample):

@@ -79,7 +79,7 @@ struct EndsSource {
 
 /// Bonds side by side in one Real.
 template <class Real>
-inline constexpr int lanes_of = sizeof(Real) / sizeof(double);
+inline constexpr std::size_t lanes_of = sizeof(Real) / sizeof(double);
 
 /// The motion of one bond, or of four.
 template <class Real, bool finite>
@@ -89,10 +89,10 @@ using MotionOf = std::conditional_t<finite, FiniteMotion<Real>, SmallMotion<Real
 template <class Real, bool finite>
 [[gnu::always_inline]] inline MotionOf<Real, finite> motion_of(const EndsSource& from, const BondEnds& ends,
                                                                const BondIndex* bond) {
-  constexpr int lanes = lanes_of<Real>;
+  constexpr std::size_t lanes = lanes_of<Real>;
   constexpr int angular = 4; // where rotations begin in a Spatial
   const double *rest[lanes], *u[lanes], *v[lanes];
-  for (int q = 0; q < lanes; ++q) {
+  for (std::size_t q = 0; q < lanes; ++q) {
     rest[q] = from.rest[bond[q]].direction.data();
     u[q] = from.displacement[ends.first(bond[q])].component;
     v[q] = from.displacement[ends.second(bond[q])].component;
@@ -107,7 +107,7 @@ template <class Real, bool finite>
     FiniteEnds<Real> turned;
     const auto &a = motion.displacement_first, &b = motion.displacement_second;
     turned.relative = {b.x - a.x, b.y - a.y, b.z - a.z};
-    for (int q = 0; q < lanes; ++q) {
+    for (std::size_t q = 0; q < lanes; ++q) {
       u[q] = from.orientation[ends.first(bond[q])].v.data();
       v[q] = from.orientation[ends.second(bond[q])].v.data();
     }
@@ -115,7 +115,7 @@ template <class Real, bool finite>
     gather(turned.v_second, turned.w_second, v);
     return {direction, length, turned};
   } else {
-    for (int q = 0; q < lanes; ++q) {
+    for (std::size_t q = 0; q < lanes; ++q) {
       u[q] += angular;
       v[q] += angular;
     }
