@@ -7,8 +7,10 @@
 #include <cdem/bond/bond_forces.hpp>
 #include <cdem/bond/bond_law.hpp>
 #include <cdem/bond/bond_tangent.hpp>
+#include <cdem/bond/check_law.hpp>
 #include <cdem/bond/finite_rotation.hpp>
 #include <cdem/bond/forces_of.hpp>
+#include <cdem/bond/law_report.hpp>
 #include <cdem/bond/linear_forces.hpp>
 #include <cdem/bond/material.hpp>
 #include <cdem/bond/response.hpp>
@@ -39,6 +41,7 @@
 #include <cdem/io/bonds_vtu.hpp>
 #include <cdem/io/checkpoint.hpp>
 #include <cdem/io/csv.hpp>
+#include <cdem/io/forces_memory.hpp>
 #include <cdem/io/from_file.hpp>
 #include <cdem/io/interrupt.hpp>
 #include <cdem/io/output_directory.hpp>
