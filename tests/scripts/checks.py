@@ -162,6 +162,30 @@ class CompileFail(Sample):
                                                              for line in both]))
 
 
+class Snippets(Sample):
+    """A page follows its source, and a page that does not is named."""
+
+    def repository(self, *code, page=("<!-- region a.hpp one -->", "```cpp", "old", "```")):
+        self.write("a.hpp", "// [one]", *code, "  // [one]")
+        self.write("README.md", "")
+        return self.write("docs/page.md", "text", *page, "more text")
+
+    def test_page_is_renewed(self):
+        page = self.repository("  int a;", "  // [two]", "    int b;")
+        self.refused("a.hpp [one] has changed", "snippets", "--check", self.folder)
+        self.accepted("snippets", self.folder)
+        self.assertIn("-->\n```cpp\nint a;\n  int b;\n```\nmore", page.read_text())
+        self.accepted("snippets", "--check", self.folder)
+
+    def test_faults_of_pages_and_sources(self):
+        self.repository("int a;", page=("<!-- region a.hpp two -->", "```cpp", "```"))
+        self.refused("a.hpp has 0 lines '// [two]', 2 are expected", "snippets", "--check", self.folder)
+        self.repository("int a;", page=("<!-- region a.hpp one -->", "no code"))
+        self.refused("is not followed by a block of code", "snippets", "--check", self.folder)
+        self.repository("int a;", page=("<!-- region b.hpp one -->", "```cpp", "```"))
+        self.refused("b.hpp", "snippets", "--check", self.folder)
+
+
 class BadOptions(Sample):
     """A stand-in for an example, which answers as it should or in one way that it should not."""
 
