@@ -55,10 +55,12 @@ inline const std::vector<RawBond>& raw_bonds(std::int64_t particles) {
              : made.emplace(particles, detail::make_raw_bonds(sample(particles))).first->second;
 }
 
-/// f = -K u.
-inline void raw_forces(const std::vector<RawBond>& bonds, const Field& displacement, Field& force) {
+/// f = -K u, each bond's part times what is `left` of it: left(number of the bond, twice its energy).
+template <class Left>
+void raw_forces(const std::vector<RawBond>& bonds, const Field& displacement, Field& force, Left&& left) {
   std::memset(static_cast<void*>(force.data()), 0, force.size() * sizeof(force[0]));
-  for (const RawBond& b : bonds) {
+  for (std::size_t number = 0; number < bonds.size(); ++number) {
+    const RawBond& b = bonds[number];
     const double *u = displacement[b.i].component, *v = displacement[b.j].component;
     double *f = force[b.i].component, *g = force[b.j].component;
     const double nx = b.n[0], ny = b.n[1], nz = b.n[2];
@@ -69,15 +71,22 @@ inline void raw_forces(const std::vector<RawBond>& bonds, const Field& displacem
     const double dx = v[4] - u[4], dy = v[5] - u[5], dz = v[6] - u[6];
     const double along = (b.kn - b.kt) * (sx * nx + sy * ny + sz * nz);
     const double twist = (b.torsion - b.bending) * (dx * nx + dy * ny + dz * nz);
-    const double fx = b.kt * sx + along * nx, fy = b.kt * sy + along * ny, fz = b.kt * sz + along * nz;
-    const double mx = b.bending * dx + twist * nx, my = b.bending * dy + twist * ny,
-                 mz = b.bending * dz + twist * nz;
+    double fx = b.kt * sx + along * nx, fy = b.kt * sy + along * ny, fz = b.kt * sz + along * nz;
+    double mx = b.bending * dx + twist * nx, my = b.bending * dy + twist * ny,
+           mz = b.bending * dz + twist * nz;
+    const double part = left(number, fx * sx + fy * sy + fz * sz + mx * dx + my * dy + mz * dz);
+    fx *= part, fy *= part, fz *= part, mx *= part, my *= part, mz *= part;
     const double arm = 0.5 * b.length;
     const double cx = arm * (ny * fz - nz * fy), cy = arm * (nz * fx - nx * fz),
                  cz = arm * (nx * fy - ny * fx);
     f[0] += fx, f[1] += fy, f[2] += fz, f[4] += cx + mx, f[5] += cy + my, f[6] += cz + mz;
     g[0] -= fx, g[1] -= fy, g[2] -= fz, g[4] += cx - mx, g[5] += cy - my, g[6] += cz - mz;
   }
+}
+
+/// f = -K u.
+inline void raw_forces(const std::vector<RawBond>& bonds, const Field& displacement, Field& force) {
+  raw_forces(bonds, displacement, force, [](std::size_t, double) { return 1.0; });
 }
 
 /// The library's forces on the sample, made once.

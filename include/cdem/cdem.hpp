@@ -10,8 +10,10 @@
 #include <cdem/bond/breakable.hpp>
 #include <cdem/bond/debonded_interface.hpp>
 #include <cdem/bond/failure_criterion.hpp>
+#include <cdem/bond/check_law.hpp>
 #include <cdem/bond/finite_rotation.hpp>
 #include <cdem/bond/forces_of.hpp>
+#include <cdem/bond/law_report.hpp>
 #include <cdem/bond/linear_forces.hpp>
 #include <cdem/bond/material.hpp>
 #include <cdem/bond/phase_pairs.hpp>
@@ -46,6 +48,7 @@
 #include <cdem/io/bonds_vtu.hpp>
 #include <cdem/io/checkpoint.hpp>
 #include <cdem/io/csv.hpp>
+#include <cdem/io/forces_memory.hpp>
 #include <cdem/io/from_file.hpp>
 #include <cdem/io/interrupt.hpp>
 #include <cdem/io/output_directory.hpp>

@@ -133,11 +133,11 @@ class CompileFail(Sample):
                      *self.check(self.EXPECT, self.CONCEPT, *self.mine(repaired="char c[80];"), self.CLAIM))
 
     def test_refusal_elsewhere(self):
-        self.refused("not at the user's line", *self.check(self.EXPECT, self.CONCEPT, *self.mine(broken="Unknown c;"),
-                                                            self.CLAIM))
+        self.refused("which is not marked", *self.check(self.EXPECT, self.CONCEPT, *self.mine(broken="Unknown c;"),
+                                                         self.CLAIM))
 
     def test_second_error(self):
-        self.refused("2 errors where one is expected",
+        self.refused("an error at sample.cpp:12, which is not marked",
                      *self.check(self.EXPECT, self.CONCEPT, *self.mine(), self.CLAIM, "#ifndef CDEM_REPAIRED",
                                  "Unknown more;", "#endif"))
 
@@ -151,7 +151,39 @@ class CompileFail(Sample):
 
     def test_file_that_asks_for_nothing(self):
         self.refused("no line '// expect:", *self.check(self.CONCEPT, *self.mine(), self.CLAIM))
-        self.refused("refused here' is expected, 0 found", *self.check(self.EXPECT, self.CONCEPT))
+        self.refused("no line is marked", *self.check(self.EXPECT, self.CONCEPT))
+
+    def test_several_refusals_in_one_file(self):
+        second = ["// expect: Small<long>|T = long", "#ifndef CDEM_REPAIRED", "static_assert(Small<long>); // refused here", "#endif"]
+        both = [self.EXPECT, self.CONCEPT, *self.mine(), self.CLAIM, *second]
+        self.accepted(*self.check(*both))
+        self.refused("0 errors at the user's line", *self.check(*[line.replace("Small<long>);", "true);") for line in both]))
+        self.refused("does not contain 'Tiny'", *self.check(*[line.replace("T = long", "Tiny").replace("Small<long>|", "")
+                                                             for line in both]))
+
+
+class Snippets(Sample):
+    """A page follows its source, and a page that does not is named."""
+
+    def repository(self, *code, page=("<!-- region a.hpp one -->", "```cpp", "old", "```")):
+        self.write("a.hpp", "// [one]", *code, "  // [one]")
+        self.write("README.md", "")
+        return self.write("docs/page.md", "text", *page, "more text")
+
+    def test_page_is_renewed(self):
+        page = self.repository("  int a;", "  // [two]", "    int b;")
+        self.refused("a.hpp [one] has changed", "snippets", "--check", self.folder)
+        self.accepted("snippets", self.folder)
+        self.assertIn("-->\n```cpp\nint a;\n  int b;\n```\nmore", page.read_text())
+        self.accepted("snippets", "--check", self.folder)
+
+    def test_faults_of_pages_and_sources(self):
+        self.repository("int a;", page=("<!-- region a.hpp two -->", "```cpp", "```"))
+        self.refused("a.hpp has 0 lines '// [two]', 2 are expected", "snippets", "--check", self.folder)
+        self.repository("int a;", page=("<!-- region a.hpp one -->", "no code"))
+        self.refused("is not followed by a block of code", "snippets", "--check", self.folder)
+        self.repository("int a;", page=("<!-- region b.hpp one -->", "```cpp", "```"))
+        self.refused("b.hpp", "snippets", "--check", self.folder)
 
 
 class BadOptions(Sample):

@@ -13,6 +13,7 @@
 /// none. A law with a memory declares `State`, takes `const State&` last, and changes it in update(prepared,
 /// deformation, State&), which is called before load and energy.
 
+#include <cdem/bond/detail/named_members.hpp>
 #include <cdem/core/dual.hpp>
 #include <cdem/core/types.hpp>
 #include <cdem/network/bond_network.hpp>
@@ -21,6 +22,7 @@
 #include <Eigen/Geometry> // cross product
 
 #include <concepts>
+#include <cstdint>
 #include <type_traits>
 #include <utility>
 
@@ -163,60 +165,99 @@ concept ValidatesParticles = requires(const L& law, const particles::ParticleSet
   law.validate(particles);
 };
 
+/// The same type. Compilers say less of it than of std::same_as where it fails.
+template <class T, class U>
+concept Is = std::is_same_v<T, U>;
+
+/// What a linear law may say of a bond: its ChannelStiffness, or its 12x12 stiffness in (u_i, th_i, u_j, th_j), rows and
+/// columns x, y, z.
+template <class K>
+concept ChannelsOrMatrix12 = std::is_same_v<K, ChannelStiffness> || std::is_same_v<K, Matrix12>;
+
+/// `law.stiffness(geometry)` gives the bond's ChannelStiffness or Matrix12.
+template <class L>
+concept GivesStiffness = requires(const L& law, const BondGeometry& geometry) {
+  { law.stiffness(geometry) } -> ChannelsOrMatrix12;
+};
+
 /// `law.stiffness(geometry)` gives the bond's ChannelStiffness.
 template <class L>
 concept GivesChannelStiffness = requires(const L& law, const BondGeometry& geometry) {
-  { law.stiffness(geometry) } -> std::same_as<ChannelStiffness>;
+  { law.stiffness(geometry) } -> Is<ChannelStiffness>;
 };
 
-/// `law.stiffness(geometry)` gives the bond's 12x12 stiffness in (u_i, th_i, u_j, th_j), rows and columns x, y, z.
+/// `law.stiffness(geometry)` gives the bond's 12x12 stiffness.
 template <class L>
 concept GivesBlockStiffness = requires(const L& law, const BondGeometry& geometry) {
-  { law.stiffness(geometry) } -> std::same_as<Matrix12>;
+  { law.stiffness(geometry) } -> Is<Matrix12>;
 };
 
-/// `law.load(prepared, deformation)`, with a State `law.load(prepared, deformation, state)`, gives a ChannelLoad.
+/// `law.load(prepared, deformation)` gives a ChannelLoad.
 template <class L>
-concept GivesLoad = (!HasState<L> &&
-                     requires(const L& law, const PreparedOf<L>& prepared, const Deformation<>& deformation) {
-                       { law.load(prepared, deformation) } -> std::same_as<ChannelLoad<>>;
-                     }) ||
-                    requires(const L& law, const PreparedOf<L>& prepared, const Deformation<>& deformation,
-                             const StateOf<L>& state) {
-  { law.load(prepared, deformation, state) } -> std::same_as<ChannelLoad<>>;
+concept GivesLoadOfDeformation = requires(const L& law, const PreparedOf<L>& prepared,
+                                          const Deformation<>& deformation) {
+  { law.load(prepared, deformation) } -> Is<ChannelLoad<>>;
 };
 
-/// `law.energy(prepared, deformation)`, with a State `law.energy(prepared, deformation, state)`, gives what is stored, J,
-/// for deformations of `Real`.
+/// `law.load(prepared, deformation, state)` gives a ChannelLoad and leaves the state alone.
+template <class L>
+concept GivesLoadOfState = requires(const L& law, const PreparedOf<L>& prepared,
+                                    const Deformation<>& deformation, const StateOf<L>& state) {
+  { law.load(prepared, deformation, state) } -> Is<ChannelLoad<>>;
+};
+
+/// `law.load` gives a ChannelLoad; where there is a State, it is told.
+template <class L>
+concept GivesLoad = (!HasState<L> && GivesLoadOfDeformation<L>) || GivesLoadOfState<L>;
+
+/// `law.energy(prepared, deformation)` gives what is stored, J, for a deformation of `Real`.
 template <class L, class Real>
-concept GivesEnergy = (!HasState<L> &&
-                       requires(const L& law, const PreparedOf<L>& prepared,
-                                const Deformation<Real>& deformation) {
-                         { law.energy(prepared, deformation) } -> std::same_as<Real>;
-                       }) ||
-                      requires(const L& law, const PreparedOf<L>& prepared,
-                               const Deformation<Real>& deformation, const StateOf<L>& state) {
-  { law.energy(prepared, deformation, state) } -> std::same_as<Real>;
+concept GivesEnergyOfDeformation = requires(const L& law, const PreparedOf<L>& prepared,
+                                            const Deformation<Real>& deformation) {
+  { law.energy(prepared, deformation) } -> Is<Real>;
 };
 
-/// `law.update(prepared, deformation, state)` changes the state, which it takes by reference.
+/// `law.energy(prepared, deformation, state)` gives what is stored, J, for a deformation of `Real`.
+template <class L, class Real>
+concept GivesEnergyOfState = requires(const L& law, const PreparedOf<L>& prepared,
+                                      const Deformation<Real>& deformation, const StateOf<L>& state) {
+  { law.energy(prepared, deformation, state) } -> Is<Real>;
+};
+
+/// `law.energy` gives what is stored for a deformation of `Real`; where there is a State, it is told.
+template <class L, class Real>
+concept GivesEnergy = (!HasState<L> && GivesEnergyOfDeformation<L, Real>) || GivesEnergyOfState<L, Real>;
+
+/// `L::State` can be copied as bytes, as arrays and checkpoints of it are.
+template <class L>
+concept StateIsTriviallyCopyable = std::is_trivially_copyable_v<StateOf<L>>;
+
+/// `L::State{}` is the state of a bond that nothing happened to.
+template <class L>
+concept StateIsDefaultConstructible = std::is_default_constructible_v<StateOf<L>>;
+
+/// `law.update(prepared, deformation, state)` lets the state follow the deformation.
 template <class L>
 concept UpdatesState = requires(const L& law, const PreparedOf<L>& prepared, const Deformation<>& deformation,
                                 StateOf<L>& state) {
   law.update(prepared, deformation, state);
-}
-&&!requires(const L& law, const PreparedOf<L>& prepared, const Deformation<>& deformation,
-            const StateOf<L>& state) {
-  law.update(prepared, deformation, state); // by value, or const: what it learns would be lost
+};
+
+/// `law.update` takes its state as `State&`: by value or as const, what it learns would be lost.
+template <class L>
+concept UpdatesStateByReference =
+    !requires(const L& law, const PreparedOf<L>& prepared, const Deformation<>& deformation) {
+  law.update(prepared, deformation, StateOf<L>{}); // a temporary does for all but State&
 };
 
 /// A law without a memory, or one that keeps it.
 template <class L>
-concept KeepsItsState = !HasState<L> || (std::is_trivially_copyable_v<StateOf<L>> && UpdatesState<L>);
+concept KeepsItsState = !HasState<L> || (StateIsTriviallyCopyable<L> && StateIsDefaultConstructible<L> &&
+                                         UpdatesState<L> && UpdatesStateByReference<L>);
 
 /// A law whose force is linear in the small motion of the bond's ends. Models: Beam, Spring, TimoshenkoBeam.
 template <class L>
-concept LinearLaw = GivesChannelStiffness<L> || GivesBlockStiffness<L>;
+concept LinearLaw = GivesStiffness<L>;
 
 /// A law that gives its load and the energy it stores.
 template <class L>
@@ -238,10 +279,111 @@ concept TurnsWithItsEnds = requires {
   requires L::finite_rotation;
 };
 
-/// A bond law. Models: Beam, Spring, and the laws that wrap another.
+namespace detail {
+
+enum class LawKind : std::uint8_t { none, linear, force, energy };
+
+/// Whether L is a law of some kind with all its parts.
 template <class L>
-concept BondLaw = std::copy_constructible<L> && ValidatesParticles<L> &&
-    (LinearLaw<L> || ForceLaw<L> || EnergyLaw<L>);
+inline constexpr bool is_whole = LinearLaw<L> || ForceLaw<L> || EnergyLaw<L>;
+
+/// The kind that a class is, or that its author meant it to be.
+template <class L>
+consteval LawKind kind_of() {
+  if constexpr (LinearLaw<L>)
+    return LawKind::linear;
+  else if constexpr (ForceLaw<L>)
+    return LawKind::force;
+  else if constexpr (EnergyLaw<L>)
+    return LawKind::energy;
+  else
+    return NamesStiffness<L> ? LawKind::linear
+           : NamesLoad<L>    ? LawKind::force
+           : NamesEnergy<L>  ? LawKind::energy
+                             : LawKind::none;
+}
+
+/// A law of every kind, never run: stands in a concept where there is nothing to ask of the law in question.
+struct AnyLaw {
+  struct State {};
+  ChannelStiffness stiffness(const BondGeometry&) const;
+  ChannelLoad<> load(const BondGeometry&, const Deformation<>&) const;
+  ChannelLoad<> load(const BondGeometry&, const Deformation<>&, const State&) const;
+  template <class Real>
+  Real energy(const BondGeometry&, const Deformation<Real>&) const;
+  template <class Real>
+  Real energy(const BondGeometry&, const Deformation<Real>&, const State&) const;
+  BondGeometry prepare(const BondGeometry&) const;
+  void update(const BondGeometry&, const Deformation<>&, State&) const;
+};
+
+// The law, where it lacks something and the question concerns it: what a concept then asks of it is asked of no other,
+// and the compiler's message has no "or". GCC does not go into the halves of a disjunction.
+template <class L, bool asked>
+using Asked = std::conditional_t<!is_whole<L> && asked, L, AnyLaw>;
+template <class L>
+using IfLinear = Asked<L, kind_of<L>() == LawKind::linear>;
+template <class L>
+using IfForce = Asked<L, kind_of<L>() == LawKind::force && !HasState<L>>;
+template <class L>
+using IfForceWithState = Asked<L, kind_of<L>() == LawKind::force && HasState<L>>;
+template <class L>
+using IfEnergy = Asked<L, kind_of<L>() == LawKind::energy && !HasState<L>>;
+template <class L>
+using IfEnergyWithState = Asked<L, kind_of<L>() == LawKind::energy && HasState<L>>;
+template <class L>
+using IfPrepares = Asked<L, NamesPrepare<L>>;
+template <class L>
+using IfUpdates =
+    std::conditional_t<NamesUpdate<L>, L, AnyLaw>; // a State left out would be a law without memory
+template <class L>
+using IfHasState = Asked<L, HasState<L>>;
+
+} // namespace detail
+
+/// The class names stiffness (a linear law), load (a force law) or energy (an energy law).
+template <class L>
+concept NamesStiffnessLoadOrEnergy = detail::kind_of<L>()
+!= detail::LawKind::none;
+
+/// `L::State` is declared.
+template <class L>
+concept DeclaresState = requires {
+  typename L::State;
+};
+
+/// `law.energy(prepared, deformation)` is a template of its Real: forces are differentiated with core::Dual.
+template <class L>
+concept EnergyIsDifferentiable = requires(const L& law, const PreparedOf<L>& prepared,
+                                          const Deformation<Differentiable>& deformation) {
+  { law.energy(prepared, deformation) } -> Is<Differentiable>;
+};
+/// The same of `law.energy(prepared, deformation, state)`.
+template <class L>
+concept EnergyOfStateIsDifferentiable = requires(const L& law, const PreparedOf<L>& prepared,
+                                                 const Deformation<Differentiable>& deformation,
+                                                 const StateOf<L>& state) {
+  { law.energy(prepared, deformation, state) } -> Is<Differentiable>;
+};
+
+/// A bond law: a LinearLaw, a ForceLaw or an EnergyLaw. Models: Beam, Spring, and the laws that wrap another.
+///
+/// A class that is none of them is asked for the parts of the kind that its author named, one by one, so that the
+/// message says what is missing.
+template <class L>
+concept BondLaw =
+    std::copy_constructible<L> && ValidatesParticles<L> && NamesStiffnessLoadOrEnergy<L> &&
+    // what it names beside its kind
+    PreparesBonds<detail::IfPrepares<L>> && DeclaresState<detail::IfUpdates<L>> &&
+    StateIsTriviallyCopyable<detail::IfHasState<L>> && StateIsDefaultConstructible<detail::IfHasState<L>> &&
+    UpdatesState<detail::IfHasState<L>> && UpdatesStateByReference<detail::IfHasState<L>> &&
+    // its kind
+    GivesStiffness<detail::IfLinear<L>> && GivesLoadOfDeformation<detail::IfForce<L>> &&
+    GivesLoadOfState<detail::IfForceWithState<L>> && GivesEnergyOfDeformation < detail::IfForce<L>,
+double > &&GivesEnergyOfState<detail::IfForceWithState<L>, double>&& GivesEnergyOfDeformation<
+             detail::IfEnergy<L>, double>&& GivesEnergyOfState<detail::IfEnergyWithState<L>, double>&&
+             EnergyIsDifferentiable<detail::IfEnergy<L>>&&
+                 EnergyOfStateIsDifferentiable<detail::IfEnergyWithState<L>>;
 
 /// Deformation of a bond in small motion, [L17] section 2.2 in frame-free form.
 ///

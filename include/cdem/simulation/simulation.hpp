@@ -3,7 +3,7 @@
 /// @file
 /// The four policies composed: packing generator, bond law, integrator, stress estimator.
 
-#include <cdem/bond/linear_forces.hpp>
+#include <cdem/bond/forces_of.hpp>
 #include <cdem/boundary/symmetric_tension.hpp>
 #include <cdem/integrate/integrator.hpp>
 #include <cdem/simulation/specimen.hpp>
@@ -18,13 +18,15 @@ namespace cdem::simulation {
 ///
 /// It composes and owns no physics: each stage is a function or class that can be used without it.
 /// @tparam Generator     fills the box with spheres
-/// @tparam Law           gives every bond its stiffness
+/// @tparam Law           how every bond resists: any BondLaw, of which bond::ForcesOf makes the forces
 /// @tparam IntegratorType moves the body, or finds its equilibrium
 /// @tparam Stress        turns bond forces into stresses
 template <packing::PackingGenerator Generator, bond::BondLaw Law, integrate::Integrator IntegratorType,
           stress::StressEstimator Stress>
 class Simulation {
 public:
+  using Forces = bond::ForcesOf<Law>;
+
   struct Parameters {
     typename Generator::Parameters packing;
     double coordination = 6.2; ///< Z, [L17] section 2.1
@@ -47,7 +49,7 @@ public:
         integrator_(parameters.integrator), stress_(std::move(stress)),
         motion_(particles::Motion::at_rest(specimen_.particles.size())) {}
 
-  /// Moves the body by `steps`, or solves for its equilibrium at unit time.
+  /// Moves the body by `steps`, or solves for its equilibrium at unit time. What bonds remember follows.
   template <class... Observer>
   requires integrate::AdvancesMotion<IntegratorType>
   auto run(std::uint64_t steps, Observer&&... observer) {
@@ -69,10 +71,14 @@ public:
   /// Reactions on the prescribed degrees of freedom of a body at rest, N.
   std::vector<double> reactions() { return integrate::static_reactions(problem(), motion_, pool_); }
 
-  integrate::Problem<bond::LinearForces> problem() const { return {forces_, inertia_, setup_.constraints}; }
+  integrate::Problem<Forces> problem() { return {forces_, inertia_, setup_.constraints}; }
+  integrate::Problem<Forces> problem() const requires(!integrate::AdvancesState<Forces>) {
+    return {forces_, inertia_, setup_.constraints};
+  }
   const typename Generator::Report& packing_report() const noexcept { return packing_.report; }
   const Specimen& specimen() const noexcept { return specimen_; }
-  const bond::LinearForces& forces() const noexcept { return forces_; }
+  const Forces& forces() const noexcept { return forces_; }
+  Forces& forces() noexcept { return forces_; } ///< to restore what they remember
   const particles::Inertia& inertia() const noexcept { return inertia_; }
   const boundary::TensionSetup& setup() const noexcept { return setup_; }
   const particles::Motion& motion() const noexcept { return motion_; }
@@ -90,7 +96,7 @@ private:
   core::ThreadPool pool_;
   packing::Packing<typename Generator::Report> packing_;
   Specimen specimen_;
-  bond::LinearForces forces_;
+  Forces forces_;
   particles::Inertia inertia_;
   boundary::TensionSetup setup_;
   IntegratorType integrator_;
