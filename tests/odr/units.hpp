@@ -17,7 +17,7 @@ static Addresses addresses() {
           address(&cdem::geometry::Box::cube),
           address(&cdem::core::block_size),
           address(&cdem::bond::local_frame),
-          address(&cdem::bond::resistance_of),
+          address(&cdem::bond::resistance_of<cdem::bond::Matrix12>),
           address(&cdem::bond::Response<cdem::bond::FiniteRotation<cdem::bond::Beam<>>>::load)};
 }
 
