@@ -64,11 +64,11 @@ struct Whole {
   double volume(std::size_t) const;
   std::optional<std::size_t> locate(const Vec3&) const;
   template <class Callback>
-  double for_each_share(const Segment&, Callback&&) const;
+  double for_each_piece(const Segment&, Callback&&) const;
 };
 struct LosesTheOutside : Whole { // hides the part outside: nothing is returned
   template <class Callback>
-  void for_each_share(const Segment&, Callback&&) const;
+  void for_each_piece(const Segment&, Callback&&) const;
 };
 struct LocatesByNumber : Whole { // a number for a point that lies in no cell
   int locate(const Vec3&) const;
@@ -79,19 +79,19 @@ struct OneVolume : Whole {
 struct CountNotConst : Whole {
   std::size_t cell_count();
 };
-struct CallbackWithoutFraction : Whole {
-  double for_each_share(const Segment&, void (*)(std::size_t)) const;
+struct CallbackWithoutEnd : Whole {
+  double for_each_piece(const Segment&, void (*)(std::size_t, double)) const;
 };
 
 static_assert(Tessellation<Whole>);
 static_assert(Tessellation<Hexahedra>);
 static_assert(StressEstimator<LoveWeber<Whole>>);
-static_assert(!Tessellation<LosesTheOutside> && !SharesSegments<LosesTheOutside>);
+static_assert(!Tessellation<LosesTheOutside> && !CutsSegments<LosesTheOutside>);
 static_assert(HasCells<LosesTheOutside> && LocatesPoints<LosesTheOutside>);
 static_assert(!Tessellation<LocatesByNumber> && !LocatesPoints<LocatesByNumber>);
 static_assert(!Tessellation<OneVolume> && !HasCells<OneVolume>);
 static_assert(!Tessellation<CountNotConst> && !HasCells<CountNotConst>);
-static_assert(!Tessellation<CallbackWithoutFraction> && !SharesSegments<CallbackWithoutFraction>);
+static_assert(!Tessellation<CallbackWithoutEnd> && !CutsSegments<CallbackWithoutEnd>);
 static_assert(!Tessellation<cdem::geometry::Box>);
 
 template <class Cells>
