@@ -48,9 +48,9 @@ inline Mat3 moment_of_stress(const StressField& field) {
 /// not being symmetric, does not balance locally.
 /// @throws core::InvalidInput unless the field has one volume and one couple stress a specimen
 inline Mat3 moment_of_couple_stress(const StressField& field) {
-  core::expect(field.couple_stress.size() == field.size(), "number of couple stresses",
-               field.couple_stress.size(), "one per specimen (" + std::to_string(field.size()) +
-                   ") is expected: were the bonds' moments given?");
+  core::expect(
+      field.couple_stress.size() == field.size(), "number of couple stresses", field.couple_stress.size(),
+      "one per specimen (" + std::to_string(field.size()) + ") is expected: were the bonds' moments given?");
   return detail::weighted_sum(field, field.couple_stress);
 }
 

@@ -22,7 +22,7 @@ struct StressField {
   /// Of tessellations: sum of f (x) d over what lies in no specimen, N m, lost to the stresses. Spheres and kernels, which
   /// overlap, leave it 0.
   Mat3 outside = Mat3::Zero();
-  std::vector<Mat3> couple_stress;    ///< [specimens] N/m, row = moment, column = branch; empty without moments
+  std::vector<Mat3> couple_stress; ///< [specimens] N/m, row = moment, column = branch; empty without moments
   Mat3 outside_couple = Mat3::Zero(); ///< likewise of the moments, N m^2
 
   std::size_t size() const noexcept { return stress.size(); }

@@ -84,8 +84,8 @@ private:
     if (count_ > 0)
       core::expect(field.couple_stress.size() == mean_.couple_stress.size(), "number of couple stresses",
                    field.couple_stress.size(),
-                   "as many as in the fields averaged before (" +
-                       std::to_string(mean_.couple_stress.size()) + ") are expected");
+                   "as many as in the fields averaged before (" + std::to_string(mean_.couple_stress.size()) +
+                       ") are expected");
     if (count_ > 0)
       core::expect(
           field.size() == mean_.size() && field.volume == mean_.volume, "number of specimens", field.size(),

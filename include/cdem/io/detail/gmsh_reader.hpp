@@ -50,8 +50,9 @@ public:
     const std::size_t found = text_.find("\n" + end, at_ > 0 ? at_ - 1 : 0);
     if (found == text_.npos)
       fail("the section $" + std::string(name) + " has no '" + end + "': is the file truncated?");
-    line_ += static_cast<std::size_t>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(at_),
-                                                 text_.begin() + static_cast<std::ptrdiff_t>(found) + 1, '\n'));
+    line_ +=
+        static_cast<std::size_t>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(at_),
+                                            text_.begin() + static_cast<std::ptrdiff_t>(found) + 1, '\n'));
     at_ = found + 1;
     expect_line(end);
   }
@@ -87,14 +88,15 @@ public:
         fail(std::string("the line ends here, ") + name + " of " + row_ + " is expected");
       const auto read = number_in<Number>(fields_[field_]);
       if (!read)
-        fail(std::string(name) + " of " + row_ + " is '" + std::string(fields_[field_].substr(0, 40)) + "', " +
-             (std::is_floating_point_v<Number> ? "a number" : "a whole number") + " is expected");
+        fail(std::string(name) + " of " + row_ + " is '" + std::string(fields_[field_].substr(0, 40)) +
+             "', " + (std::is_floating_point_v<Number> ? "a number" : "a whole number") + " is expected");
       value = *read;
       ++field_;
     }
     if constexpr (std::is_floating_point_v<Number>)
       if (!std::isfinite(value))
-        fail(std::string(name) + " of " + row_ + " is " + core::to_text(value) + ", a finite number is expected");
+        fail(std::string(name) + " of " + row_ + " is " + core::to_text(value) +
+             ", a finite number is expected");
     return value;
   }
   /// The number of things that follow, each of a byte at least.
@@ -135,7 +137,8 @@ public:
     read_format();
     while (const auto line = in_.line()) {
       if (line->front() != '$')
-        in_.fail("'" + std::string(line->substr(0, 40)) + "' stands here, a section such as $Nodes is expected");
+        in_.fail("'" + std::string(line->substr(0, 40)) +
+                 "' stands here, a section such as $Nodes is expected");
       const std::string name(line->substr(1));
       if (name == "Nodes")
         version_ == 2 ? read_nodes_2() : read_nodes_4();
@@ -150,7 +153,8 @@ public:
       in_.expect_line("$End" + name);
     }
     if (mesh_.cell_count() == 0)
-      in_.fail("the file ends here, and without any tetrahedron, wedge or hexahedron: a mesh of a volume is expected");
+      in_.fail("the file ends here, and without any tetrahedron, wedge or hexahedron: a mesh of a volume is "
+               "expected");
     keep_used_nodes();
     return std::move(mesh_);
   }
@@ -169,7 +173,9 @@ private:
       return {nodes[static_cast<std::size_t>(type)], true};
     if (type < 1 || type > 19 || type == 7 || (type >= 11 && type <= 14) || type >= 17)
       in_.fail("element type " + std::to_string(type) +
-               (type == 7 ? " (pyramid)" : type < 1 || type > 19 ? "" : " (of second order)") +
+               (type == 7               ? " (pyramid)"
+                : type < 1 || type > 19 ? ""
+                                        : " (of second order)") +
                " is not read; tetrahedra (4), hexahedra (5) and wedges (6) of first order are expected");
     return {nodes[static_cast<std::size_t>(type)], false};
   }
@@ -185,8 +191,9 @@ private:
       in_.fail("version is " + core::to_text(version) + ", 4.1 or 2.2 is expected");
     version_ = version == 2.2 ? 2 : 4;
     if (type < 0 || type > 1 || (type == 1 && version_ == 2))
-      in_.fail("file type is " + std::to_string(type) +
-               (version_ == 2 ? ", text (0) is expected of version 2.2" : ", text (0) or binary (1) is expected"));
+      in_.fail(
+          "file type is " + std::to_string(type) +
+          (version_ == 2 ? ", text (0) is expected of version 2.2" : ", text (0) or binary (1) is expected"));
     if (size != 8)
       in_.fail("data size is " + std::to_string(size) + ", 8 is expected");
     in_.binary = type == 1;
@@ -306,7 +313,8 @@ private:
         continue;
       const auto node = node_of_.find(tag);
       if (node == node_of_.end())
-        in_.fail("a corner is the node " + std::to_string(tag) + ", which $Nodes (it stands before $Elements) does not hold");
+        in_.fail("a corner is the node " + std::to_string(tag) +
+                 ", which $Nodes (it stands before $Elements) does not hold");
       corner[k] = node->second;
     }
     in_.end_row();

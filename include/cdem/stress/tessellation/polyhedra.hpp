@@ -27,7 +27,7 @@ namespace cdem::stress::tessellation {
 /// Each cell is the union of the tetrahedra that geometry::cut_to_tetrahedra() makes of it, which is exact for cells whose faces
 /// are not plane too: the cells neither overlap nor leave gaps. A uniform grid of bins, each with the tetrahedra that reach
 /// into it, finds those that a point or a piece of a segment may lie in. The mesh's outside, holes included, is
-/// outside. There are no periodic faces.
+/// outside; a place within 1e-10 of a cell's size of it is inside, so that rounding opens no gaps. There are no periodic faces.
 class Polyhedra {
 public:
   /// @throws core::InvalidInput for a mesh that is not valid, or a cell of which a tetrahedron has no volume or one of
@@ -178,9 +178,9 @@ private:
         box.lower = box.lower.cwiseMin(mesh.nodes[node]);
         box.upper = box.upper.cwiseMax(mesh.nodes[node]);
       }
-    const double tetrahedra =
-        static_cast<double>(mesh.tetrahedra.size()) + 3 * static_cast<double>(mesh.wedges.size()) +
-        6 * static_cast<double>(mesh.hexahedra.size());
+    const double tetrahedra = static_cast<double>(mesh.tetrahedra.size()) +
+                              3 * static_cast<double>(mesh.wedges.size()) +
+                              6 * static_cast<double>(mesh.hexahedra.size());
     return Hexahedra::near_cubes(
         box, static_cast<std::size_t>(std::clamp(bins_per_tetrahedron * tetrahedra, 1.0, 1e8)));
   }

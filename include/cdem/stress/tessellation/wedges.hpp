@@ -28,8 +28,7 @@ struct WedgeCut {
   /// The triangle at the axis' lower end, its normal pointing out of the wedge as VTK_WEDGE has it, then the upper one.
   Corners corners(std::size_t part, const std::array<std::uint32_t, 8>& hexahedron) const {
     const unsigned u = 1U << first(), v = 1U << second(), up = 1U << index_of(axis);
-    const std::array<unsigned, 3> triangle =
-        part == 0 ? std::array{0U, u | v, u} : std::array{0U, v, u | v};
+    const std::array<unsigned, 3> triangle = part == 0 ? std::array{0U, u | v, u} : std::array{0U, v, u | v};
     Corners result{};
     for (std::size_t k = 0; k < 3; ++k) {
       result[k] = hexahedron[vtk_corner(triangle[k])];
