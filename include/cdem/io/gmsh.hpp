@@ -18,7 +18,7 @@ namespace cdem::io {
 /// what specimens they make.
 /// @param scale  m in one unit of the file, such as 1e-3 for mm
 /// @throws core::InvalidInput for a scale that is not a finite number above 0
-/// @throws core::FileError    "cannot read <file>: line <n>: <what is there>, <what is expected>" (byte instead of line in
+/// @throws core::FileError    "cannot read <file>: line <n>: <what is there>, <what is expected>" ("after byte <n>" in
 ///         binary files) for a file that is missing, cut, damaged, of another format, or holds other volume elements or none
 /// @complexity O(bytes of the file), of which it holds a copy
 inline geometry::Mesh read_gmsh(const std::filesystem::path& path, double scale = 1) {

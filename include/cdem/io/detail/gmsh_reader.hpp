@@ -22,9 +22,9 @@ public:
   bool binary = false;
 
   [[noreturn]] void fail(const std::string& why) const {
-    throw core::FileError("cannot read " + path_.string() +
-                          (binary ? ": byte " + std::to_string(at_) : ": line " + std::to_string(line_)) +
-                          ": " + why);
+    throw core::FileError(
+        "cannot read " + path_.string() +
+        (binary ? ": after byte " + std::to_string(at_) : ": line " + std::to_string(line_)) + ": " + why);
   }
 
   /// The next line that is not blank, trimmed; none at the end of the file.
@@ -314,7 +314,7 @@ private:
       const auto node = node_of_.find(tag);
       if (node == node_of_.end())
         in_.fail("a corner is the node " + std::to_string(tag) +
-                 ", which $Nodes (it stands before $Elements) does not hold");
+                 ", a node that $Nodes (it stands before $Elements) holds is expected");
       corner[k] = node->second;
     }
     in_.end_row();
