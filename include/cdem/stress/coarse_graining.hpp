@@ -78,7 +78,7 @@ public:
   ///                   reach
   /// @throws core::InvalidInput for a bad particle or bond, a number of loads other than the bonds', a load that is not finite, or a
   ///         reach and half a branch that exceed half a periodic edge
-  /// @complexity       O(bonds + points * bonds within reach); 8 bytes a bond beside the result
+  /// @complexity       O(bonds + points * bonds within reach); 80 bytes a bond beside the result
   StressField estimate(const particles::ParticleSet& particles, const network::BondNetwork& network,
                        const BondLoads& loads) const {
     core::ThreadPool one_thread;
@@ -105,10 +105,10 @@ public:
                             core::ThreadPool& pool) const {
     core::expect(values.size() == positions.size(), "number of values", values.size(),
                  "one per particle (" + std::to_string(positions.size()) + ") is expected");
-    const detail::PointBins bins = bins_of(positions);
+    const detail::NearPoints near = near_points(positions);
     std::vector<Value> result(points_.size(), zero<Value>());
     detail::for_each_point(pool, points_.size(), [&](std::size_t point) {
-      for_each_weight(bins, positions, point,
+      for_each_weight(near, point,
                       [&](std::size_t i, double weight) { result[point] += weight * values[i]; });
     });
     return result;
@@ -126,13 +126,13 @@ public:
     inertia.validate(particles.size());
     core::expect(velocity.size() == particles.size(), "number of velocities", velocity.size(),
                  "one per particle (" + std::to_string(particles.size()) + ") is expected");
-    const detail::PointBins bins = bins_of(particles.position);
+    const detail::NearPoints near = near_points(particles.position);
     const std::size_t count = points_.size();
     CoarseMotion motion{std::vector<double>(count, 0), std::vector<Vec3>(count, Vec3::Zero()),
                         std::vector<Vec3>(count, Vec3::Zero()), std::vector<Mat3>(count, Mat3::Zero())};
     detail::for_each_point(pool, count, [&](std::size_t point) {
       const auto for_each_mass = [&](auto&& use) {
-        for_each_weight(bins, particles.position, point, [&](std::size_t i, double weight) {
+        for_each_weight(near, point, [&](std::size_t i, double weight) {
           use(weight * inertia.mass[i], Vec3(velocity[i].linear()));
         });
       };
@@ -168,24 +168,19 @@ private:
       return Value::Zero();
   }
 
-  detail::PointBins bins_of(const std::vector<Vec3>& positions) const {
+  detail::NearPoints near_points(const std::vector<Vec3>& positions) const {
     for (std::size_t i = 0; i < positions.size(); ++i)
       if (!positions[i].allFinite())
         core::reject("position of particle " + std::to_string(i), detail::text_of(positions[i]),
                      "a finite point is expected");
-    return {box_, positions.size(), kernel_.reach(), [&](std::size_t i) { return positions[i]; }};
+    return {box_, positions, kernel_.reach()};
   }
 
   /// Calls use(i, phi) for every particle within reach of a point.
   template <class Use>
-  void for_each_weight(const detail::PointBins& bins, const std::vector<Vec3>& positions, std::size_t point,
-                       Use&& use) const {
-    const double reach = kernel_.reach();
-    bins.for_each_near(points_[point], reach, [&](std::size_t i) {
-      const double square = box_.minimum_image(positions[i] - points_[point]).squaredNorm();
-      if (square < reach * reach)
-        use(i, kernel_.density(std::sqrt(square)));
-    });
+  void for_each_weight(const detail::NearPoints& near, std::size_t point, Use&& use) const {
+    near.for_each(points_[point],
+                  [&](std::size_t i, double square) { use(i, kernel_.density(std::sqrt(square))); });
   }
 
   std::vector<Vec3> points_;

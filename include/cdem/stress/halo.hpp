@@ -70,7 +70,7 @@ public:
   /// @return           [points] Pa, tension positive, not symmetrised; volumes; centres inside
   /// @throws core::InvalidInput for a bad particle or bond, a number of loads other than the bonds', a load that is not finite, or a
   ///         radius and half a branch that exceed half a periodic edge
-  /// @complexity       O(bonds + points * bonds in a ball); 8 bytes a bond beside the result
+  /// @complexity       O(bonds + points * bonds in a ball); 80 bytes a bond beside the result
   StressField estimate(const particles::ParticleSet& particles, const network::BondNetwork& network,
                        const BondLoads& loads) const {
     core::ThreadPool one_thread;

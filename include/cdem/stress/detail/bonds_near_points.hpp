@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -57,19 +58,42 @@ inline double checked_longest_branch(const network::BondNetwork& network, const 
   return longest.empty() ? 0 : std::sqrt(*std::max_element(longest.begin(), longest.end()));
 }
 
-/// [points] the number of centres nearer than the reach.
-inline std::vector<std::uint32_t> count_near(const std::vector<Vec3>& points, double reach,
-                                             const geometry::Box& box, const std::vector<Vec3>& centres,
-                                             core::ThreadPool& pool) {
-  const PointBins bins(box, centres.size(), reach, [&](std::size_t i) { return centres[i]; });
-  std::vector<std::uint32_t> count(points.size(), 0);
-  for_each_point(pool, points.size(), [&](std::size_t point) {
-    bins.for_each_near(points[point], reach, [&](std::size_t i) {
-      count[point] += box.minimum_image(centres[i] - points[point]).squaredNorm() < reach * reach ? 1U : 0U;
+/// Points that hold something, in the order of their bins, to be met by distance.
+class NearPoints {
+public:
+  NearPoints(const geometry::Box& box, const std::vector<Vec3>& positions, double reach)
+      : box_(box), reach_(reach),
+        bins_(box, positions.size(), reach, [&](std::size_t i) { return positions[i]; }) {
+    sorted_.reserve(positions.size());
+    for (const std::uint64_t i : bins_.order())
+      sorted_.push_back(positions[i]);
+  }
+
+  /// Calls use(i, squared distance) for every point nearer than the reach.
+  template <class Use>
+  void for_each(const Vec3& place, Use&& use) const {
+    bins_.for_each_stretch(place, reach_, [&](std::uint64_t begin, std::uint64_t end) {
+      for (std::uint64_t k = begin; k < end; ++k)
+        if (const double square = box_.minimum_image(sorted_[k] - place).squaredNorm();
+            square < reach_ * reach_)
+          use(static_cast<std::size_t>(bins_.order()[k]), square);
     });
-  });
-  return count;
-}
+  }
+
+private:
+  geometry::Box box_;
+  double reach_;
+  PointBins bins_;
+  std::vector<Vec3> sorted_;
+};
+
+/// A branch as the search meets it: one cache line.
+struct BondLine {
+  Vec3 middle;
+  Vec3 direction; ///< of length 1
+  double length;
+  std::uint64_t bond;
+};
 
 /// Sums over the bonds, weighted by a kernel phi around each point:
 ///
@@ -79,7 +103,7 @@ inline std::vector<std::uint32_t> count_near(const std::vector<Vec3>& points, do
 /// phi times T at the centroid of phi along the branch.
 /// @tparam Kernel  reach(), integral(), first_moment(): see SmoothingKernel
 /// @return         stress, couple_stress and particles; the caller sets the volumes
-/// @complexity     O(bonds + points * bonds within reach); 8 bytes a bond beside the result
+/// @complexity     O(bonds + points * bonds within reach); 80 bytes a bond beside the result
 template <class Kernel>
 StressField sum_near_points(const std::vector<Vec3>& points, const Kernel& kernel, const geometry::Box& box,
                             const particles::ParticleSet& particles, const network::BondNetwork& network,
@@ -93,35 +117,48 @@ StressField sum_near_points(const std::vector<Vec3>& points, const Kernel& kerne
     return particles.position[network.first[bond]] + 0.5 * network.branch[bond];
   };
   const PointBins bins(box, network.size(), far, middle_of);
+  std::vector<BondLine> lines(network.size());
+  core::parallel_for(pool, lines.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint64_t bond = bins.order()[k];
+      const double length = network.branch[bond].norm();
+      lines[k] = {middle_of(bond), network.branch[bond] / length, length, bond};
+    }
+  });
+  const NearPoints centres(box, particles.position, reach);
 
   StressField field;
-  field.particles = count_near(points, reach, box, particles.position, pool);
+  field.particles.assign(points.size(), 0);
   field.stress.assign(points.size(), Mat3::Zero());
   field.couple_stress.assign(loads.has_moments() ? points.size() : 0, Mat3::Zero());
   for_each_point(pool, points.size(), [&](std::size_t point) {
     Mat3 stress = Mat3::Zero(), couple = Mat3::Zero();
-    bins.for_each_near(points[point], far, [&](std::size_t bond) {
-      const Vec3& branch = network.branch[bond];
-      const Vec3 middle = box.minimum_image(middle_of(bond) - points[point]);
-      const double length = branch.norm(), place = middle.dot(branch) / length; // of the middle, along
+    const auto add = [&](const BondLine& line) {
+      const Vec3 middle = box.minimum_image(line.middle - points[point]);
+      const double place = middle.dot(line.direction); // of the middle, along the branch
       const double square = std::max(0.0, middle.squaredNorm() - place * place);
-      if (square >= reach * reach)
+      if (square >= reach * reach || std::abs(place) >= reach + 0.5 * line.length)
         return;
       const double chord = std::sqrt(reach * reach - square);
-      const double begin = std::max(place - 0.5 * length, -chord),
-                   end = std::min(place + 0.5 * length, chord);
+      const double begin = std::max(place - 0.5 * line.length, -chord);
+      const double end = std::min(place + 0.5 * line.length, chord);
       if (!(end > begin))
         return;
-      const double weight = kernel.integral(begin, end, square) / length;
-      stress.noalias() += (weight * loads.forces[bond]) * branch.transpose();
+      const double integral = kernel.integral(begin, end, square);
+      const Vec3& force = loads.forces[line.bond];
+      stress.noalias() += (integral * force) * line.direction.transpose();
       if (loads.has_moments()) {
-        const double moment = kernel.first_moment(begin, end, square) / length;
-        // Where along the branch: place + (s - 1/2) length, whose kernel-weighted mean is moment / weight.
-        const Vec3 transferred = weight * loads.moments[bond] -
-                                 ((moment - place * weight) / length) * branch.cross(loads.forces[bond]);
-        couple.noalias() += transferred * branch.transpose();
+        // Where along the branch, s - 1/2 = (t - place) / length; d x f = length * direction x f.
+        const double lever = kernel.first_moment(begin, end, square) - place * integral;
+        const Vec3 transferred = integral * loads.moments[line.bond] - lever * line.direction.cross(force);
+        couple.noalias() += transferred * line.direction.transpose();
       }
+    };
+    bins.for_each_stretch(points[point], far, [&](std::uint64_t begin, std::uint64_t end) {
+      for (std::uint64_t k = begin; k < end; ++k)
+        add(lines[k]);
     });
+    centres.for_each(points[point], [&](std::size_t, double) { ++field.particles[point]; });
     field.stress[point] = stress;
     if (loads.has_moments())
       field.couple_stress[point] = couple;
