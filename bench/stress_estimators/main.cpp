@@ -96,19 +96,6 @@ void measure(Body& body, const char* name, bool adds_up, Make&& make) {
   std::fflush(stdout);
 }
 
-template <class Cells>
-geometry::Mesh mesh_of(const Cells& cells) {
-  geometry::Mesh mesh;
-  mesh.nodes = cells.corner_points();
-  if constexpr (std::is_same_v<Cells, Wedges>)
-    mesh.wedges = cells.cell_corners();
-  else if constexpr (std::is_same_v<Cells, Tetrahedra>)
-    mesh.tetrahedra = cells.cell_corners();
-  else
-    mesh.hexahedra = cells.cell_corners();
-  return mesh;
-}
-
 void run(const char* mesh_file) {
   Body body;
   std::printf("%zu particles, %zu bonds with moments\n\n%-38s %8s %9s %9s %9s %6s %9s\n",

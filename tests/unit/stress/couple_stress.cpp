@@ -120,13 +120,10 @@ TEST_CASE("a body in equilibrium: both sides of the balance, in every tessellati
     CHECK(sample::same_bytes(field, estimator.estimate(body.particles, body.network, solved.loads(), pool)));
   };
   const Hexahedra grid(body.box, {3, 4, 5});
-  geometry::Mesh mesh;
-  mesh.nodes = grid.corner_points();
-  mesh.hexahedra = grid.cell_corners();
   check(grid);
   check(Wedges(grid, Axis::y));
   check(Tetrahedra(grid));
-  check(Polyhedra(mesh));
+  check(Polyhedra(mesh_of(grid)));
 }
 
 TEST_CASE("coarse graining balances forces and moments at every point") {

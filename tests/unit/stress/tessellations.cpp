@@ -28,19 +28,6 @@ using sample::refusal;
 
 const Box oblong{Vec3(-1, 0.5, 2), Vec3(1, 3.5, 2.75), {false, false, false}};
 
-template <class Cells>
-Mesh mesh_of(const Cells& cells) {
-  Mesh mesh;
-  mesh.nodes = cells.corner_points();
-  if constexpr (std::is_same_v<Cells, Wedges>)
-    mesh.wedges = cells.cell_corners();
-  else if constexpr (std::is_same_v<Cells, Tetrahedra>)
-    mesh.tetrahedra = cells.cell_corners();
-  else
-    mesh.hexahedra = cells.cell_corners();
-  return mesh;
-}
-
 /// [cells + 1] part of the segment in each cell and, last, outside. Pieces must come in order and fill the segment.
 template <class Cells>
 std::vector<double> shares_of(const Cells& cells, const Segment& segment) {
@@ -101,7 +88,7 @@ void check_filling(const Cells& cells, const Box& box) {
     const Segment segment = random_segment(random, box, 0.7);
     const auto shares = shares_of(cells, segment);
     CHECK(shares.back() == 0);
-    CHECK(largest_difference(shares, sampled_shares(cells, segment, 4000)) < 2.0 / 4000);
+    CHECK(largest_difference(shares, sampled_shares(cells, segment, 1000)) < 2.0 / 1000);
   }
 }
 
@@ -244,7 +231,7 @@ TEST_CASE("through periodic faces the wedges and tetrahedra of the other side go
       Segment segment = random_segment(random, box, 0.9);
       segment.extent.head<2>() *= 3;
       CHECK(shares_of(cells, segment).back() == 0);
-      CHECK(largest_difference(shares_of(cells, segment), sampled_shares(cells, segment, 4000)) < 6.0 / 4000);
+      CHECK(largest_difference(shares_of(cells, segment), sampled_shares(cells, segment, 1000)) < 6.0 / 1000);
       Segment image = segment;
       image.start += Vec3(4, -3, 0);
       CHECK(largest_difference(shares_of(cells, segment), shares_of(cells, image)) < 1e-12);

@@ -16,6 +16,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -287,5 +288,22 @@ private:
 };
 
 static_assert(Tessellation<Polyhedra>);
+
+/// The cells of Hexahedra, Wedges or Tetrahedra as a mesh, with the same numbers: to change its nodes, or to add to it.
+template <class Cells>
+geometry::Mesh mesh_of(const Cells& cells) {
+  geometry::Mesh mesh;
+  mesh.nodes = cells.corner_points();
+  auto corners = cells.cell_corners();
+  constexpr std::size_t count = std::tuple_size_v<typename decltype(corners)::value_type>;
+  static_assert(count == 4 || count == 6 || count == 8, "tetrahedra, wedges or hexahedra are expected");
+  if constexpr (count == 4)
+    mesh.tetrahedra = std::move(corners);
+  else if constexpr (count == 6)
+    mesh.wedges = std::move(corners);
+  else
+    mesh.hexahedra = std::move(corners);
+  return mesh;
+}
 
 } // namespace cdem::stress::tessellation
