@@ -30,8 +30,8 @@ struct BondLoads {
   std::span<const Vec3> forces;  ///< [bonds] N, on the bond's first particle
   std::span<const Vec3> moments; ///< [bonds] N m, M: on the first half, half-way between the ends; or empty
 
-  /// @param forces   [bonds] N; must live as long as the loads are used
-  /// @param moments  [bonds] N m, or empty: no couple stress then
+  /// @param bond_forces   [bonds] N; must live as long as the loads are used
+  /// @param bond_moments  [bonds] N m, or empty: no couple stress then
   template <class Forces>
   requires std::convertible_to<Forces, std::span<const Vec3>>
   BondLoads(Forces&& bond_forces, std::span<const Vec3> bond_moments = {})

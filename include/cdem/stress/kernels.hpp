@@ -38,7 +38,7 @@ concept SmoothingKernel = HasReach<K> && GivesDensity<K> && IntegratesAlongLines
 
 /// Lucy's polynomial, twice continuously differentiable, of bounded support.
 ///
-/// phi(r) = 105/(16 pi c^3) (1 + 3 r/c) (1 - r/c)^3 for r < c               Lucy 1977; Weinhart et al. 2012
+/// phi(r) = 105/(16 pi c^3) (1 + 3 r/c) (1 - r/c)^3 for r < c               Lucy 1977
 ///
 /// Its standard deviation along an axis is c/sqrt(12). Line integrals are in closed form.
 class Lucy {
