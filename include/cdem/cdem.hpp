@@ -32,7 +32,9 @@
 #include <cdem/core/random.hpp>
 #include <cdem/core/types.hpp>
 #include <cdem/core/vector_registers.hpp>
+#include <cdem/geometry/ball_in_box.hpp>
 #include <cdem/geometry/box.hpp>
+#include <cdem/geometry/mesh.hpp>
 #include <cdem/geometry/segment.hpp>
 #include <cdem/homogenize/running_average.hpp>
 #include <cdem/homogenize/tension_gauge.hpp>
@@ -50,6 +52,7 @@
 #include <cdem/io/csv.hpp>
 #include <cdem/io/forces_memory.hpp>
 #include <cdem/io/from_file.hpp>
+#include <cdem/io/gmsh.hpp>
 #include <cdem/io/interrupt.hpp>
 #include <cdem/io/output_directory.hpp>
 #include <cdem/io/packing_file.hpp>
@@ -80,10 +83,17 @@
 #include <cdem/particles/spatial_field.hpp>
 #include <cdem/simulation/simulation.hpp>
 #include <cdem/simulation/specimen.hpp>
+#include <cdem/stress/bond_loads.hpp>
 #include <cdem/stress/closure.hpp>
+#include <cdem/stress/coarse_graining.hpp>
+#include <cdem/stress/halo.hpp>
+#include <cdem/stress/kernels.hpp>
 #include <cdem/stress/love_weber.hpp>
 #include <cdem/stress/statistics.hpp>
 #include <cdem/stress/stress_estimator.hpp>
 #include <cdem/stress/tessellation/hexahedra.hpp>
+#include <cdem/stress/tessellation/polyhedra.hpp>
 #include <cdem/stress/tessellation/tessellation.hpp>
+#include <cdem/stress/tessellation/tetrahedra.hpp>
+#include <cdem/stress/tessellation/wedges.hpp>
 #include <cdem/stress/time_average.hpp>

@@ -1,5 +1,7 @@
-// The least that a stress estimator is, used by what a caller may do with any of them.
+// The least that a stress estimator, a tessellation and a kernel are, used by what a caller may do with any of them.
 
+#include <cdem/stress/coarse_graining.hpp>
+#include <cdem/stress/love_weber.hpp>
 #include <cdem/stress/stress_estimator.hpp>
 
 namespace archetype {
@@ -30,4 +32,42 @@ Mat3 moment_of(const E& estimator, const particles::ParticleSet& particles,
 template Mat3 moment_of<Estimator>(const Estimator&, const particles::ParticleSet&,
                                    const network::BondNetwork&, const std::vector<Vec3>&);
 
+// One that reads the moments is handed forces alone just as well.
+class CoupleEstimator {
+public:
+  CoupleEstimator(const CoupleEstimator&) = delete;
+  stress::StressField estimate(const particles::ParticleSet&, const network::BondNetwork&,
+                               const stress::BondLoads&) const {
+    return {};
+  }
+};
+
+static_assert(stress::StressEstimator<CoupleEstimator> && stress::EstimatesCoupleStress<CoupleEstimator>);
+template Mat3 moment_of<CoupleEstimator>(const CoupleEstimator&, const particles::ParticleSet&,
+                                         const network::BondNetwork&, const std::vector<Vec3>&);
+
+// Only what the concepts name, and moves.
+struct Cells {
+  Cells(Cells&&) = default;
+  std::size_t cell_count() const { return 1; }
+  double volume(std::size_t) const { return 1; }
+  std::optional<std::size_t> locate(const Vec3&) const { return 0; }
+  template <class Callback>
+  double for_each_piece(const geometry::Segment&, Callback&& callback) const {
+    callback(std::size_t{0}, 0.0, 1.0);
+    return 0;
+  }
+};
+
+struct Kernel {
+  Kernel(Kernel&&) = default;
+  double reach() const { return 1; }
+  double density(double) const { return 1; }
+  double integral(double begin, double end, double) const { return end - begin; }
+  double first_moment(double, double, double) const { return 0; }
+};
+
 } // namespace archetype
+
+template class cdem::stress::LoveWeber<archetype::Cells>;
+template class cdem::stress::CoarseGraining<archetype::Kernel>;

@@ -6,6 +6,7 @@
 #include <cdem/core/error.hpp>
 #include <cdem/core/parallel.hpp>
 #include <cdem/geometry/segment.hpp>
+#include <cdem/stress/bond_loads.hpp>
 #include <cdem/stress/stress_estimator.hpp>
 #include <cdem/stress/tessellation/hexahedra.hpp>
 #include <cdem/stress/tessellation/tessellation.hpp>
@@ -16,7 +17,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,6 +55,9 @@ struct LoveWeberParameters {
 /// what is outside, is the sum of f (x) d over the bonds, whatever the tessellation. A branch that leaves
 /// through a periodic face re-enters through the opposite one.
 ///
+/// With moments also the couple stress, mu = (1/V) sum over bonds of (integral of T(s) ds over the piece inside) (x) d: the
+/// moment T that a bond transfers (see BondLoads) is linear along it, so a piece has that of its middle times its length.
+///
 /// Positions and branches are those at rest (small displacements), so the stress is linear in the forces: the
 /// stress of the forces averaged over time is the average of the stresses.
 template <tessellation::Tessellation Cells = tessellation::Hexahedra>
@@ -81,34 +84,42 @@ public:
   ///
   /// @param particles  positions at rest; radii are read by Sharing::by_midpoint
   /// @param network    bonds and branches at rest
-  /// @param forces     [bonds] N, on the bond's first particle
+  /// @param loads      [bonds] forces, N, on the bond's first particle; moments, N m, or none
   /// @return           [specimens] Pa, tension positive, not symmetrised
-  /// @throws core::InvalidInput for a bad particle or bond, a number of forces other than the bonds', a force
+  /// @throws core::InvalidInput for a bad particle or bond, a number of loads other than the bonds', a load
   ///         that is not finite, and with Outside::refuse a centre or a part of a branch outside the specimens
   /// @complexity       O(particles + pieces of branches); about 4 MB of working memory beside the result
   StressField estimate(const particles::ParticleSet& particles, const network::BondNetwork& network,
-                       std::span<const Vec3> forces) const {
+                       const BondLoads& loads) const {
     core::ThreadPool one_thread;
-    return estimate(particles, network, forces, one_thread);
+    return estimate(particles, network, loads, one_thread);
   }
 
   /// The same on the threads of `pool`: every specimen sums its bonds in their order, so the bytes are the
   /// same for any number of threads.
   StressField estimate(const particles::ParticleSet& particles, const network::BondNetwork& network,
-                       std::span<const Vec3> forces, core::ThreadPool& pool) const {
+                       const BondLoads& loads, core::ThreadPool& pool) const {
     particles.validate();
-    expect_matching_sizes(particles, network, forces);
+    detail::expect_matching_sizes(particles, network, loads);
 
     const std::size_t count = cells_.cell_count();
     StressField field;
     field.particles = count_particles(particles, pool);
-    field.stress = sum_of_moments(particles, network, forces, pool);
-    field.outside = field.stress.back();
-    field.stress.pop_back();
+    field.stress.assign(count + 1, Mat3::Zero());
+    field.couple_stress.assign(loads.has_moments() ? count + 1 : 0, Mat3::Zero());
+    add_moments(particles, network, loads, field, pool);
     field.volume.resize(count);
     for (std::size_t cell = 0; cell < count; ++cell) {
       field.volume[cell] = cells_.volume(cell);
       field.stress[cell] /= field.volume[cell];
+      if (loads.has_moments())
+        field.couple_stress[cell] /= field.volume[cell];
+    }
+    field.outside = field.stress.back();
+    field.stress.pop_back();
+    if (loads.has_moments()) {
+      field.outside_couple = field.couple_stress.back();
+      field.couple_stress.pop_back();
     }
     return field;
   }
@@ -117,23 +128,13 @@ private:
   /// Part of a bond in a cell; the cell that follows the last stands for the outside.
   struct Share {
     double fraction;
+    double middle; ///< part of the branch at which the piece has its middle: where its mean moment is
     std::uint32_t cell;
     std::uint32_t bond; ///< counted from the first of the round
   };
 
   static constexpr std::size_t blocks_per_round = 64;
   static constexpr std::size_t bonds_per_round = blocks_per_round * core::block_size;
-
-  static void expect_matching_sizes(const particles::ParticleSet& particles,
-                                    const network::BondNetwork& network, std::span<const Vec3> forces) {
-    core::expect(network.particle_count == particles.size(), "number of particles of the network",
-                 network.particle_count,
-                 "that of the particle set, " + std::to_string(particles.size()) + ", is expected");
-    core::expect(network.second.size() == network.size() && network.branch.size() == network.size(),
-                 "number of bonds", network.size(), "first, second and branch of one length are expected");
-    core::expect(forces.size() == network.size(), "number of forces", forces.size(),
-                 "one per bond (" + std::to_string(network.size()) + ") is expected");
-  }
 
   /// [cells] number of centres in each.
   std::vector<std::uint32_t> count_particles(const particles::ParticleSet& particles,
@@ -145,7 +146,7 @@ private:
         const std::optional<std::size_t> cell = cells_.locate(particles.position[i]);
         if (!cell && parameters_.outside == Outside::refuse) [[unlikely]]
           core::reject(
-              "position of particle " + std::to_string(i), text_of(particles.position[i]),
+              "position of particle " + std::to_string(i), detail::text_of(particles.position[i]),
               "a point inside the tessellation is expected (or the parameter outside = Outside::report)");
         cell_of[i] = cell ? static_cast<std::uint32_t>(*cell) : outside;
       }
@@ -157,14 +158,12 @@ private:
     return centres;
   }
 
-  /// [cells + 1] sum of f (x) d in each cell, N m, and outside of all.
+  /// Adds f (x) d, N m, and T (x) d, N m^2, of each cell and, last, of the outside.
   ///
   /// Bonds are taken in rounds, which bounds the memory. In a round, blocks of bonds first list their shares;
   /// then every thread adds up those of its own cells, in the order of the bonds.
-  std::vector<Mat3> sum_of_moments(const particles::ParticleSet& particles,
-                                   const network::BondNetwork& network, std::span<const Vec3> forces,
-                                   core::ThreadPool& pool) const {
-    std::vector<Mat3> moment(cells_.cell_count() + 1, Mat3::Zero());
+  void add_moments(const particles::ParticleSet& particles, const network::BondNetwork& network,
+                   const BondLoads& loads, StressField& field, core::ThreadPool& pool) const {
     std::vector<std::vector<Share>> shares(blocks_per_round);
     for (std::size_t round = 0; round < network.size(); round += bonds_per_round) {
       pool.for_each_block(blocks_per_round, [&](std::size_t block) {
@@ -172,7 +171,7 @@ private:
         const std::size_t begin = std::min(network.size(), round + block * core::block_size);
         const std::size_t end = std::min(network.size(), begin + core::block_size);
         for (std::size_t bond = begin; bond < end; ++bond) {
-          expect_sound(network, forces, bond);
+          detail::expect_sound(network, loads, bond);
           list_shares(particles, network, bond, static_cast<std::uint32_t>(bond - round), shares[block]);
         }
       });
@@ -182,12 +181,15 @@ private:
           for (const Share& share : list)
             if (owner_of(share.cell, owners) == owner) {
               const std::size_t bond = round + share.bond;
-              moment[share.cell].noalias() +=
-                  (share.fraction * forces[bond]) * network.branch[bond].transpose();
+              const Vec3& branch = network.branch[bond];
+              field.stress[share.cell].noalias() +=
+                  (share.fraction * loads.forces[bond]) * branch.transpose();
+              if (loads.has_moments())
+                field.couple_stress[share.cell].noalias() +=
+                    (share.fraction * loads.moment_at(bond, branch, share.middle)) * branch.transpose();
             }
       });
     }
-    return moment;
   }
 
   /// Thread that sums a cell: runs of eight cells, so that threads seldom write to one cache line.
@@ -195,61 +197,47 @@ private:
     return owners == 1 ? 0 : cell / 8 % owners;
   }
 
-  static std::string text_of(const Vec3& vector) {
-    return core::to_text(vector.x()) + " " + core::to_text(vector.y()) + " " + core::to_text(vector.z());
-  }
-
-  static void expect_sound(const network::BondNetwork& network, std::span<const Vec3> forces,
-                           std::size_t bond) {
-    const auto name = [&](const char* what) {
-      return what + std::string(" of bond ") + std::to_string(bond);
-    };
-    if (!forces[bond].allFinite()) [[unlikely]]
-      core::reject(name("force"), text_of(forces[bond]), "a finite vector, in N, is expected");
-    if (network.first[bond] >= network.particle_count) [[unlikely]]
-      core::reject(name("first particle"), network.first[bond],
-                   "a number below " + std::to_string(network.particle_count) + " is expected");
-    if (network.second[bond] >= network.particle_count) [[unlikely]]
-      core::reject(name("second particle"), network.second[bond],
-                   "a number below " + std::to_string(network.particle_count) + " is expected");
-    const double square = network.branch[bond].squaredNorm();
-    if (!(std::isfinite(square) && square > 0)) [[unlikely]]
-      core::reject(name("branch"), text_of(network.branch[bond]),
-                   "a finite vector of positive length, in m, is expected");
-  }
-
   void list_shares(const particles::ParticleSet& particles, const network::BondNetwork& network,
                    std::size_t bond, std::uint32_t number, std::vector<Share>& list) const {
     const geometry::Segment branch{particles.position[network.first[bond]], network.branch[bond]};
+    const std::size_t before = list.size();
     double outside = 0;
     if (parameters_.sharing == Sharing::by_length) {
-      outside = cells_.for_each_share(branch, [&](std::size_t cell, double fraction) {
-        list.push_back({fraction, static_cast<std::uint32_t>(cell), number});
+      outside = cells_.for_each_piece(branch, [&](std::size_t cell, double begin, double end) {
+        list.push_back({end - begin, 0.5 * (begin + end), static_cast<std::uint32_t>(cell), number});
       });
-    } else if (const auto cell = cells_.locate(contact_point(particles, network, bond, branch))) {
-      list.push_back({1, static_cast<std::uint32_t>(*cell), number});
     } else {
-      outside = 1;
+      const double contact = contact_place(particles, network, bond);
+      if (const auto cell = cells_.locate(branch.at(contact)))
+        list.push_back({1, contact, static_cast<std::uint32_t>(*cell), number});
+      else
+        outside = 1;
     }
     if (outside > 0) [[unlikely]] {
       if (parameters_.outside == Outside::refuse)
         core::reject("part outside the tessellation of bond " + std::to_string(bond), outside,
                      "0 is expected: is the box periodic where the bonds are (or is Outside::report meant)?");
-      list.push_back({outside, static_cast<std::uint32_t>(cells_.cell_count()), number});
+      double first_moment = 0.5; // of the whole branch; less that of the pieces inside
+      for (std::size_t k = before; k < list.size(); ++k)
+        first_moment -= list[k].fraction * list[k].middle;
+      if (parameters_.sharing == Sharing::by_midpoint)
+        first_moment = contact_place(particles, network, bond);
+      list.push_back(
+          {outside, first_moment / outside, static_cast<std::uint32_t>(cells_.cell_count()), number});
     }
   }
 
-  /// Middle of the gap between the two spheres; an end of the branch if one sphere lies within the other.
-  static Vec3 contact_point(const particles::ParticleSet& particles, const network::BondNetwork& network,
-                            std::size_t bond, const geometry::Segment& branch) {
+  /// Part of the branch at the middle of the gap between the two spheres; 0 or 1 if one sphere lies within the other.
+  static double contact_place(const particles::ParticleSet& particles, const network::BondNetwork& network,
+                              std::size_t bond) {
     const double difference = particles.radius[network.first[bond]] - particles.radius[network.second[bond]];
-    return branch.at(std::clamp(0.5 + 0.5 * difference / branch.extent.norm(), 0.0, 1.0));
+    return std::clamp(0.5 + 0.5 * difference / network.branch[bond].norm(), 0.0, 1.0);
   }
 
   Cells cells_;
   Parameters parameters_;
 };
 
-static_assert(StressEstimator<LoveWeber<>>);
+static_assert(StressEstimator<LoveWeber<>> && EstimatesCoupleStress<LoveWeber<>>);
 
 } // namespace cdem::stress

@@ -11,7 +11,7 @@
 
 namespace cdem::stress {
 
-/// Running weighted average of stress fields on the same specimens.
+/// Running weighted average of stress fields on the same specimens, whatever the estimator; couple stresses with them.
 ///
 /// mean += (w / W) (scale sigma - mean), W the sum of the weights so far      (Welford 1962; West 1979)
 ///
@@ -33,14 +33,16 @@ public:
     expect_finite_stress(field);
     if (count_ == 0) {
       mean_ = field;
-      for (Mat3& stress : mean_.stress)
-        stress *= scale;
-      mean_.outside *= scale;
+      for_each_tensor(mean_, [&](Mat3& mean) { mean *= scale; });
     } else {
       const double part = weight / (weight_ + weight);
-      for (std::size_t cell = 0; cell < mean_.size(); ++cell)
-        mean_.stress[cell] += part * (scale * field.stress[cell] - mean_.stress[cell]);
-      mean_.outside += part * (scale * field.outside - mean_.outside);
+      const auto move = [&](Mat3& mean, const Mat3& value) { mean += part * (scale * value - mean); };
+      for (std::size_t cell = 0; cell < mean_.stress.size(); ++cell)
+        move(mean_.stress[cell], field.stress[cell]);
+      for (std::size_t cell = 0; cell < mean_.couple_stress.size(); ++cell)
+        move(mean_.couple_stress[cell], field.couple_stress[cell]);
+      move(mean_.outside, field.outside);
+      move(mean_.outside_couple, field.outside_couple);
     }
     weight_ += weight;
     ++count_;
@@ -57,18 +59,33 @@ public:
     core::expect(count_ > 0, "number of stress fields averaged", count_, "1 or more is expected");
     core::expect_finite(scale, "scale of the stress");
     StressField field = mean_;
-    for (Mat3& stress : field.stress)
-      stress *= scale;
-    field.outside *= scale;
+    for_each_tensor(field, [&](Mat3& tensor) { tensor *= scale; });
     return field;
   }
 
 private:
+  template <class Function>
+  static void for_each_tensor(StressField& field, Function&& function) {
+    for (auto* tensors : {&field.stress, &field.couple_stress})
+      for (Mat3& tensor : *tensors)
+        function(tensor);
+    function(field.outside);
+    function(field.outside_couple);
+  }
+
   void expect_same_specimens(const StressField& field) const {
     core::expect(field.size() > 0, "number of specimens", field.size(), "1 or more is expected");
     core::expect(field.volume.size() == field.size() && field.particles.size() == field.size(),
                  "number of specimens", field.size(),
                  "stress, volume and particles of one length are expected");
+    core::expect(field.couple_stress.empty() || field.couple_stress.size() == field.size(),
+                 "number of couple stresses", field.couple_stress.size(),
+                 "one per specimen (" + std::to_string(field.size()) + ") is expected, or none at all");
+    if (count_ > 0)
+      core::expect(field.couple_stress.size() == mean_.couple_stress.size(), "number of couple stresses",
+                   field.couple_stress.size(),
+                   "as many as in the fields averaged before (" + std::to_string(mean_.couple_stress.size()) +
+                       ") are expected");
     if (count_ > 0)
       core::expect(
           field.size() == mean_.size() && field.volume == mean_.volume, "number of specimens", field.size(),
@@ -76,11 +93,15 @@ private:
   }
 
   static void expect_finite_stress(const StressField& field) {
-    for (std::size_t cell = 0; cell < field.size(); ++cell)
-      if (!field.stress[cell].allFinite())
-        core::reject("stress of specimen " + std::to_string(cell),
-                     field.stress[cell].format(Eigen::IOFormat(6, Eigen::DontAlignCols, " ", "; ")),
-                     "a finite tensor is expected");
+    const auto expect_finite = [](const std::vector<Mat3>& tensors, const char* name) {
+      for (std::size_t cell = 0; cell < tensors.size(); ++cell)
+        if (!tensors[cell].allFinite())
+          core::reject(name + std::to_string(cell),
+                       tensors[cell].format(Eigen::IOFormat(6, Eigen::DontAlignCols, " ", "; ")),
+                       "a finite tensor is expected");
+    };
+    expect_finite(field.stress, "stress of specimen ");
+    expect_finite(field.couple_stress, "couple stress of specimen ");
   }
 
   StressField mean_;

@@ -4,6 +4,8 @@
 #include <cdem/io/particles_vtu.hpp>
 #include <cdem/io/specimens_vtu.hpp>
 #include <cdem/stress/tessellation/hexahedra.hpp>
+#include <cdem/stress/tessellation/tetrahedra.hpp>
+#include <cdem/stress/tessellation/wedges.hpp>
 
 #include <iostream>
 #include <limits>
@@ -108,12 +110,32 @@ void write_specimens(const std::filesystem::path& folder) {
     field.stress.push_back((Mat3() << x, 2, 3, 0, x, 0, 0, 5, x).finished());
     field.volume.push_back(tessellation.volume(s));
     field.particles.push_back(static_cast<std::uint32_t>(80 + s));
+    field.couple_stress.push_back(2 * field.stress.back());
   }
   io::write_specimens_vtu(folder / "specimens.vtu", tessellation, io::fields_of(field));
 
   const std::vector<Vec3> corners{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}, {0, 1, 1}, {1, 0, 1}};
   const std::vector<std::array<std::uint32_t, 6>> wedges{{0, 1, 2, 3, 4, 5}};
   io::write_specimens_vtu(folder / "wedge.vtu", corners, wedges, io::SpecimenFields{});
+
+  namespace cells = stress::tessellation;
+  const auto numbered = [](std::size_t count) {
+    io::SpecimenFields fields;
+    fields.extra.push_back({"number", count, [](std::size_t s) { return s; }});
+    return fields;
+  };
+  const cells::Wedges cut(tessellation, Axis::y);
+  io::write_specimens_vtu(folder / "wedges.vtu", cut, numbered(cut.cell_count()));
+  const cells::Tetrahedra tetrahedra(tessellation);
+  io::write_specimens_vtu(folder / "tetrahedra.vtu", tetrahedra, numbered(tetrahedra.cell_count()));
+
+  geometry::Mesh mesh; // a hexahedron and a wedge beside it
+  mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1},
+                {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {2, 0, 0}, {2, 0, 1}};
+  mesh.hexahedra = {{0, 1, 2, 3, 4, 5, 6, 7}};
+  mesh.wedges = {{1, 2, 8, 5, 6, 9}};
+  io::write_specimens_vtu(folder / "mesh.vtu", mesh, numbered(2));
+  io::write_specimens_vtu(folder / "points.vtu", mesh.nodes, numbered(10));
 }
 
 } // namespace

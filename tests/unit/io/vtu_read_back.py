@@ -136,6 +136,7 @@ def check_specimens(grid):
     zero = np.zeros(cells)
     expected = np.stack([s, zero + 2, zero + 3, zero, s, zero, zero, zero + 5, s], axis=1)
     same(grid.cell["stress [Pa]"], expected, "stress")
+    same(grid.cell["couple stress [N/m]"], 2 * expected, "couple stress")
     # pure shear of 1, 1.5 and 2.5 in the three planes, whatever the pressure
     mises = np.sqrt(3 * (1**2 + 1.5**2 + 2.5**2))
     np.testing.assert_allclose(grid.cell["von Mises stress [Pa]"], np.full(cells, mises), rtol=1e-12)
@@ -157,7 +158,18 @@ def main():
     wedge = Grid(folder / "wedge.vtu")
     assert wedge.cells() == [(WEDGE, [0, 1, 2, 3, 4, 5])]
     np.testing.assert_allclose(wedge.volumes(), [0.5], rtol=1e-12)
-    print("VTK read 6 files and every value in them")
+    for name, kind, parts in (("wedges", WEDGE, 2), ("tetrahedra", TETRAHEDRON, 6)):
+        grid = Grid(folder / f"{name}.vtu")
+        assert {cell for cell, _ in grid.cells()} == {kind}
+        np.testing.assert_allclose(grid.volumes(), np.full(24 * parts, 1 / parts), rtol=1e-12)
+        same(grid.cell["number"], np.arange(24 * parts), "number")
+    mesh = Grid(folder / "mesh.vtu")
+    assert mesh.cells() == [(WEDGE, [1, 2, 8, 5, 6, 9]), (HEXAHEDRON, [0, 1, 2, 3, 4, 5, 6, 7])]
+    np.testing.assert_allclose(mesh.volumes(), [0.5, 1], rtol=1e-12)
+    points = Grid(folder / "points.vtu")
+    assert points.cells() == [(VERTEX, [k]) for k in range(10)]
+    same(points.cell["number"], np.arange(10), "number")
+    print("VTK read 10 files and every value in them")
 
 
 if __name__ == "__main__":

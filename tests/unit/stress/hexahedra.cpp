@@ -31,10 +31,10 @@ struct Shares {
 
 Shares shares_of(const Hexahedra& grid, const Segment& segment) {
   Shares shares{std::vector<double>(grid.cell_count(), 0), 0};
-  shares.outside = grid.for_each_share(segment, [&](std::size_t cell, double fraction) {
+  shares.outside = grid.for_each_piece(segment, [&](std::size_t cell, double begin, double end) {
     REQUIRE(cell < grid.cell_count());
-    CHECK(fraction > 0);
-    shares.cell[cell] += fraction;
+    CHECK(end > begin);
+    shares.cell[cell] += end - begin;
   });
   return shares;
 }
@@ -239,11 +239,12 @@ TEST_CASE("segments through edges and corners, along faces, and points") {
   }
   SUBCASE("ends on planes: no piece of no length") {
     int pieces = 0;
-    const double outside = grid.for_each_share({Vec3(0.25, 0.3, 0.3), Vec3(0.25, 0, 0)},
-                                               [&](std::size_t number, double fraction) {
+    const double outside = grid.for_each_piece({Vec3(0.25, 0.3, 0.3), Vec3(0.25, 0, 0)},
+                                               [&](std::size_t number, double begin, double end) {
                                                  ++pieces;
                                                  CHECK(number == cell(1, 1, 1));
-                                                 CHECK(fraction == 1);
+                                                 CHECK(begin == 0);
+                                                 CHECK(end == 1);
                                                });
     CHECK(outside == 0);
     CHECK(pieces == 1);

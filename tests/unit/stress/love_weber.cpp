@@ -254,8 +254,8 @@ struct OneCell {
   double volume(std::size_t) const { return cell_volume; }
   std::optional<std::size_t> locate(const Vec3&) const { return 0; }
   template <class Callback>
-  double for_each_share(const geometry::Segment&, Callback&& callback) const {
-    callback(std::size_t{0}, 1.0);
+  double for_each_piece(const geometry::Segment&, Callback&& callback) const {
+    callback(std::size_t{0}, 0.0, 1.0);
     return 0;
   }
 };

@@ -106,7 +106,11 @@ inline Body stressed_lattice(int n, double a, const Mat3& stress) {
 inline bool same_bytes(const stress::StressField& a, const stress::StressField& b) {
   return a.size() == b.size() && a.volume == b.volume && a.particles == b.particles &&
          std::memcmp(a.stress.data(), b.stress.data(), a.size() * sizeof(Mat3)) == 0 &&
-         std::memcmp(&a.outside, &b.outside, sizeof(Mat3)) == 0;
+         std::memcmp(&a.outside, &b.outside, sizeof(Mat3)) == 0 &&
+         a.couple_stress.size() == b.couple_stress.size() &&
+         (a.couple_stress.empty() || std::memcmp(a.couple_stress.data(), b.couple_stress.data(),
+                                                 a.couple_stress.size() * sizeof(Mat3)) == 0) &&
+         std::memcmp(&a.outside_couple, &b.outside_couple, sizeof(Mat3)) == 0;
 }
 
 /// The message of the InvalidInput that action() throws; empty if it throws none.

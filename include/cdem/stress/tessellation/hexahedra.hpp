@@ -178,6 +178,23 @@ public:
                   static_cast<double>(cell / (count(0) * count(1))) + 0.5);
   }
 
+  /// Coordinates of a point within a cell, from 0 to 1 along each axis; in a periodic direction those of the image nearest to
+  /// the cell. A point outside the cell has one below 0 or above 1.
+  Vec3 local(std::size_t cell, const Vec3& point) const {
+    const std::array<std::size_t, 3> place{cell % count(0), cell / count(0) % count(1),
+                                           cell / (count(0) * count(1))};
+    Vec3 result;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      const double n = directions_[k].count;
+      double c = directions_[k].coordinate(point[axis]) - static_cast<double>(place[k]);
+      if (directions_[k].periodic)
+        c -= n * std::round((c - 0.5) / n);
+      result[axis] = c;
+    }
+    return result;
+  }
+
   /// Cell that holds a point; none for a point outside the walls (or not finite).
   std::optional<std::size_t> locate(const Vec3& point) const {
     if (!point.allFinite())
@@ -186,15 +203,14 @@ public:
     return inside(walks) ? std::optional(cell_of(walks)) : std::nullopt;
   }
 
-  /// Calls callback(cell, fraction) for each piece of the segment, from its start to its end, and returns the
-  /// fraction that lies outside the walls; see SharesSegments. A piece along a face goes to the cell above
-  /// it.
+  /// Calls callback(cell, begin, end) for each piece of the segment, from its start to its end, and returns the
+  /// part that lies outside the walls; see CutsSegments. A piece along a face goes to the cell above it.
   ///
   /// A cell is met twice if the segment re-enters it through a periodic face.
   /// @param segment  of finite ends
   /// @complexity     O(cells met)
   template <class Callback>
-  double for_each_share(const geometry::Segment& segment, Callback&& callback) const {
+  double for_each_piece(const geometry::Segment& segment, Callback&& callback) const {
     auto walks = walks_along(segment);
     double done = 0;
     double outside = 0;
@@ -203,7 +219,7 @@ public:
       const double until = std::min(1.0, walks[next].crossing);
       if (until > done) { // a segment through an edge or a corner crosses several planes at once
         if (inside(walks))
-          callback(cell_of(walks), until - done);
+          callback(cell_of(walks), done, until);
         else
           outside += until - done;
         done = until;
