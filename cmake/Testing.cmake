@@ -35,12 +35,18 @@ function(cdem_add_program name variable)
   set(${variable} ${target} PARENT_SCOPE)
 endfunction()
 
-# cdem_add_test(<name>): tests/<name>.cpp holds doctest cases (main is provided) or, under static/ and archetypes/,
-# at least compiles.
+# cdem_add_test(<name> [UNOPTIMISED]): tests/<name>.cpp holds doctest cases (main is provided) or, under static/ and
+# archetypes/, at least compiles. UNOPTIMISED is for tests that run in no time and instantiate much: they compile in half
+# the time.
 function(cdem_add_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "UNOPTIMISED" "" "")
   cdem_add_program(${name} target)
   target_link_libraries(${target} PRIVATE cdem_doctest_main doctest::doctest)
-  target_precompile_headers(${target} REUSE_FROM cdem_doctest_main)
+  if(arg_UNOPTIMISED)
+    target_compile_options(${target} PRIVATE -O0)
+  else()
+    target_precompile_headers(${target} REUSE_FROM cdem_doctest_main)
+  endif()
   add_test(NAME ${name} COMMAND ${target} WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
   cdem_describe_test(${name})
   if(NOT name MATCHES "^(static|archetypes)/")

@@ -32,6 +32,7 @@ struct Params {
   double density = 2500; ///< kg/m^3
   double strain = 1e-3;  ///< of the cube
   std::vector<Method> methods = {Method::statics, Method::relaxation, Method::verlet};
+  int load_steps = 20;         ///< of static and relaxation
   std::uint64_t steps = 20000; ///< of velocity Verlet
   int threads = 0;
 
@@ -126,23 +127,30 @@ inline Pulled pull(const SofteningBeam& law, Method method, const Params& params
   pulled.motion = particles::Motion::at_rest(specimen.particles.size());
   auto setup = setup_at(way); // statics: displacement at unit time
   using Problem = integrate::Problem<bond::BondForces<SofteningBeam>>;
-  // [integrators]
-  if (method == Method::statics)
-    integrate::StaticMultigrid({.relative_residual = 1e-7})
-        .solve(Problem{forces, inertia, setup.constraints}, pulled.motion, pool, monitor);
-  if (method == Method::relaxation)
-    integrate::DynamicRelaxation({.relative_residual = 1e-7})
-        .solve(Problem{forces, inertia, setup.constraints}, pulled.motion, pool, monitor);
   if (method == Method::verlet) {
     const double time_step = 0.5 * integrate::critical_time_step(forces, inertia).time_step;
     setup = setup_at(way / (time_step * static_cast<double>(params.steps)));
+    // [verlet]
     const Problem problem{forces, inertia, setup.constraints};
     const double omega = integrate::first_axial_frequency(problem, specimen.particles, specimen.box.lower.x(),
                                                           specimen.box.upper.x(), Axis::x, pool);
-    integrate::VelocityVerlet({.time_step = time_step, .damping = integrate::Damping::of_mode(0.5, omega)})
-        .run(problem, pulled.motion, params.steps, pool, integrate::NoObserver{}, monitor);
+    const integrate::VelocityVerlet verlet(
+        {.time_step = time_step, .damping = integrate::Damping::of_mode(0.5, omega)});
+    verlet.run(problem, pulled.motion, params.steps, pool, integrate::NoObserver{}, monitor);
+    // [verlet]
+  } else { // in steps, so that the energy lost on the way is seen
+    for (int step = 1; step <= params.load_steps; ++step) {
+      setup = setup_at(way * step / params.load_steps);
+      // [statics]
+      const Problem problem{forces, inertia, setup.constraints};
+      if (method == Method::statics)
+        integrate::StaticMultigrid({.relative_residual = 1e-7}).solve(problem, pulled.motion, pool, monitor);
+      else
+        integrate::DynamicRelaxation({.relative_residual = 1e-7})
+            .solve(problem, pulled.motion, pool, monitor);
+      // [statics]
+    }
   }
-  // [integrators]
   const Problem problem{forces, inertia, setup.constraints};
   const homogenize::TensionGauge gauge(specimen.particles, specimen.network, setup);
   pulled.youngs_modulus =
@@ -176,6 +184,7 @@ inline Result run(const Params& params, const core::Monitor& monitor = {}) {
                 {}};
   Params gently = params;
   gently.strain = 1e-6 * params.law.onset;
+  gently.load_steps = 1;
   result.elastic_modulus =
       detail::pull(SofteningBeam(params.law), Method::statics, gently, result.specimen, pool, monitor)
           .youngs_modulus;

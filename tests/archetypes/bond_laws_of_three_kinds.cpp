@@ -2,7 +2,7 @@
 // here asks no more of a law than the concept does.
 
 #include <cdem/bond/bond_forces.hpp>
-#include <cdem/bond/finite_rotation.hpp>
+#include <cdem/bond/check_law.hpp>
 #include <cdem/integrate/dynamic_relaxation.hpp>
 #include <cdem/integrate/static_multigrid.hpp>
 #include <cdem/integrate/velocity_verlet.hpp>
@@ -69,6 +69,7 @@ void through_everything(const Law& law, const particles::ParticleSet& particles,
   integrate::StaticMultigrid().solve(problem, motion, pool);
   integrate::critical_time_step(forces, inertia);
   integrate::energy_ledger(problem, motion, pool);
+  bond::check_law(law);
 }
 
 } // namespace
@@ -77,15 +78,10 @@ template class cdem::bond::BondForces<Block>;
 template class cdem::bond::BondForces<Force>;
 template class cdem::bond::BondForces<Energy>;
 
-int main(int argc, char**) {
-  if (argc > 100) { // never
-    particles::ParticleSet particles;
-    network::BondNetwork network;
-    particles::Inertia inertia;
-    particles::Motion motion;
-    core::ThreadPool pool;
-    through_everything(Block(1), particles, network, inertia, motion, pool);
-    through_everything(Force(1), particles, network, inertia, motion, pool);
-    through_everything(Energy(1), particles, network, inertia, motion, pool);
-  }
+// Never called: main is doctest's.
+void compile_all(const particles::ParticleSet& particles, const network::BondNetwork& network,
+                 const particles::Inertia& inertia, particles::Motion& motion, core::ThreadPool& pool) {
+  through_everything(Block(1), particles, network, inertia, motion, pool);
+  through_everything(Force(1), particles, network, inertia, motion, pool);
+  through_everything(Energy(1), particles, network, inertia, motion, pool);
 }

@@ -1,6 +1,10 @@
 // A class that is no bond law is refused where forces are made of it, not somewhere within.
 
 #include <cdem/bond/forces_of.hpp>
+#include <cdem/integrate/velocity_verlet.hpp>
+#include <cdem/packing/lattice.hpp>
+#include <cdem/simulation/simulation.hpp>
+#include <cdem/stress/love_weber.hpp>
 
 namespace {
 
@@ -30,5 +34,12 @@ std::size_t in_a_function(const cdem::particles::ParticleSet& particles,
 
 // expect: EnergyIsDifferentiable
 using Forces = ForcesOf<Law>; // refused here
+
+using cdem::integrate::VelocityVerlet;
+using cdem::packing::Lattice;
+using cdem::simulation::Simulation;
+using cdem::stress::LoveWeber;
+// expect: EnergyIsDifferentiable
+using Cube = Simulation<Lattice, Law, VelocityVerlet, LoveWeber<>>; // refused here
 
 } // namespace

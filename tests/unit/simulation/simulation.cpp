@@ -1,6 +1,7 @@
 // The four policies composed give what the stages give one by one.
 
 #include <cdem/bond/beam.hpp>
+#include <cdem/bond/finite_rotation.hpp>
 #include <cdem/bond/spring.hpp>
 #include <cdem/integrate/velocity_verlet.hpp>
 #include <cdem/packing/lubachevsky_stillinger.hpp>
@@ -66,6 +67,25 @@ TEST_CASE("another law takes the place of the first with no other change") {
   cube.run(50);
   CHECK(cube.energies().elastic > 0);
   CHECK(cube.reactions().size() == cube.setup().constraints.size());
+}
+
+TEST_CASE("a law with finite rotations moves as the linear one while rotations are small") {
+  const auto pulled = [](auto law) {
+    Cube<decltype(law)> cube({.packing = {.particles = 600, .density = 0.6, .cov = 0, .seed = 4},
+                              .law = {.materials = {{.youngs_modulus = 220.2e9, .radius_ratio = 0.722}}},
+                              .density = {2200},
+                              .integrator = {.time_step = 1e-9, .damping = {}}},
+                             eight_specimens());
+    cube.run(200);
+    const stress::StressField field = cube.stress();
+    return std::pair{cube.energies(), stress::moment_of_stress(field)};
+  };
+  const bond::Beam<> beam({.materials = {{.youngs_modulus = 1, .radius_ratio = 1}}});
+  const auto [energy, moment] = pulled(beam);
+  const auto [finite_energy, finite_moment] = pulled(bond::FiniteRotation<bond::Beam<>>(beam));
+  CHECK(finite_energy.elastic == doctest::Approx(energy.elastic).epsilon(1e-5));
+  CHECK(finite_energy.kinetic == doctest::Approx(energy.kinetic).epsilon(1e-5));
+  CHECK((finite_moment - moment).norm() < 1e-5 * moment.norm());
 }
 
 TEST_CASE("a bad parameter of any stage is named") {
