@@ -59,11 +59,17 @@ public:
     return integrator_.solve(problem(), motion_, pool_);
   }
 
-  /// Stress of each specimen as the body stands, Pa.
+  /// Stress of each specimen as the body stands, Pa, and couple stress, N/m, of an estimator that has it.
   stress::StressField stress() {
     std::vector<Vec3> forces;
     forces_.bond_forces(motion_.displacement, forces, pool_);
-    return stress_.estimate(specimen_.particles, specimen_.network, forces);
+    if constexpr (stress::EstimatesCoupleStress<Stress>) {
+      std::vector<Vec3> moments;
+      forces_.bond_moments(motion_.displacement, moments, pool_);
+      return stress_.estimate(specimen_.particles, specimen_.network, stress::BondLoads{forces, moments});
+    } else {
+      return stress_.estimate(specimen_.particles, specimen_.network, forces);
+    }
   }
 
   /// Energies as they stand, J.
