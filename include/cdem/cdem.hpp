@@ -8,9 +8,9 @@
 #include <cdem/bond/bond_law.hpp>
 #include <cdem/bond/bond_tangent.hpp>
 #include <cdem/bond/breakable.hpp>
+#include <cdem/bond/check_law.hpp>
 #include <cdem/bond/debonded_interface.hpp>
 #include <cdem/bond/failure_criterion.hpp>
-#include <cdem/bond/check_law.hpp>
 #include <cdem/bond/finite_rotation.hpp>
 #include <cdem/bond/forces_of.hpp>
 #include <cdem/bond/law_report.hpp>

@@ -1,7 +1,5 @@
 // Newton's method with the static multigrid, on laws that are not linear.
 
-#include "../bond/body.hpp"
-
 #include <cdem/bond/bond_forces.hpp>
 #include <cdem/integrate/static_multigrid.hpp>
 #include <cdem/particles/inertia.hpp>
@@ -10,6 +8,8 @@
 
 #include <cmath>
 #include <vector>
+
+#include "../bond/body.hpp"
 
 namespace {
 
@@ -72,7 +72,8 @@ TEST_CASE("a row of stiffening bonds stretches by the root of the cubic, each bo
 TEST_CASE("linear forces take one Newton step") {
   Row row;
   CHECK(row.pull({.k = 2, .c = 0}, 0.5).newton_iterations == 1);
-  CHECK(row.motion.displacement[Row::last].linear().norm() == doctest::Approx(Row::last * 0.25).epsilon(1e-9));
+  CHECK(row.motion.displacement[Row::last].linear().norm() ==
+        doctest::Approx(Row::last * 0.25).epsilon(1e-9));
 }
 
 TEST_CASE("a load beyond what the bonds bear is not reached, and says so") {
