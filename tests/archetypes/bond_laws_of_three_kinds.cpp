@@ -74,8 +74,6 @@ void through_everything(const Law& law, const particles::ParticleSet& particles,
 
 } // namespace
 
-template class cdem::bond::BondForces<Block>;
-template class cdem::bond::BondForces<Force>;
 template class cdem::bond::BondForces<Energy>;
 
 // Never called: main is doctest's.
