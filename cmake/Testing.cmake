@@ -79,6 +79,16 @@ function(cdem_add_python_test name)
   endif()
 endfunction()
 
+# cdem_add_syntax_test(<name>): tests/<name>.cpp instantiates what it is about; the compiler reads it and makes no code.
+function(cdem_add_syntax_test name)
+  add_test(
+    NAME ${name}
+    COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fsyntax-only ${CMAKE_CURRENT_SOURCE_DIR}/${name}.cpp
+            "-I$<JOIN:$<TARGET_PROPERTY:cdem_doctest_main,INCLUDE_DIRECTORIES>,;-I>"
+    COMMAND_EXPAND_LISTS)
+  cdem_describe_test(${name})
+endfunction()
+
 # cdem_add_compile_fail(<name>): tests/compile_fail/<name>.cpp must be refused with the message it asks for, and be
 # accepted once repaired; scripts/check_compile_fail says how such a file is written.
 function(cdem_add_compile_fail name)

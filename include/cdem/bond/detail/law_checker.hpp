@@ -82,8 +82,8 @@ public:
       const BondedPair pair = random_pair();
       name_ = pair.text();
       length_ = pair.length();
+      Forces forces(law_, pair.particles, pair.network); // validates
       check_response(pair);
-      Forces forces(law_, pair.particles, pair.network);
       check_balance(pair, forces);
       check_frame(pair, forces);
       check_order(pair, forces);
