@@ -3,6 +3,8 @@
 /// @file
 /// Numbers that carry their derivatives: forward automatic differentiation of small functions.
 
+#include <cdem/core/unrolled.hpp>
+
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -30,7 +32,7 @@ struct Dual {
   Dual(const Real& constant) requires(!std::is_arithmetic_v<Real>) : value(constant) {}
 
   /// Variable number `index` of the function.
-  static Dual variable(const Real& value, std::size_t index) {
+  [[gnu::always_inline]] static Dual variable(const Real& value, std::size_t index) {
     Dual x;
     x.value = value;
     x.derivative[index] = Real(1);
@@ -38,62 +40,66 @@ struct Dual {
   }
 
   /// f(x) from f and f' at the value: the chain rule.
-  static Dual chain(const Dual& x, const Real& f, const Real& slope) {
+  [[gnu::always_inline]] static Dual chain(const Dual& x, const Real& f, const Real& slope) {
     Dual y;
     y.value = f;
-    for (std::size_t k = 0; k < count; ++k)
-      y.derivative[k] = slope * x.derivative[k];
+    unrolled<count>([&](std::size_t k)
+                        __attribute__((always_inline)) { y.derivative[k] = slope * x.derivative[k]; });
     return y;
   }
 
-  Dual& operator+=(const Dual& other) {
+  [[gnu::always_inline]] Dual& operator+=(const Dual& other) {
     value += other.value;
-    for (std::size_t k = 0; k < count; ++k)
-      derivative[k] += other.derivative[k];
+    unrolled<count>([&](std::size_t k)
+                        __attribute__((always_inline)) { derivative[k] += other.derivative[k]; });
     return *this;
   }
-  Dual& operator-=(const Dual& other) {
+  [[gnu::always_inline]] Dual& operator-=(const Dual& other) {
     value -= other.value;
-    for (std::size_t k = 0; k < count; ++k)
-      derivative[k] -= other.derivative[k];
+    unrolled<count>([&](std::size_t k)
+                        __attribute__((always_inline)) { derivative[k] -= other.derivative[k]; });
     return *this;
   }
-  Dual& operator*=(const Dual& other) { return *this = *this * other; }
-  Dual& operator/=(const Dual& other) { return *this = *this / other; }
+  [[gnu::always_inline]] Dual& operator*=(const Dual& other) { return *this = *this * other; }
+  [[gnu::always_inline]] Dual& operator/=(const Dual& other) { return *this = *this / other; }
 
-  friend Dual operator+(Dual a, const Dual& b) { return a += b; }
-  friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
-  friend Dual operator+(const Dual& a) { return a; }
-  friend Dual operator-(const Dual& a) { return chain(a, -a.value, Real(-1)); }
-  friend Dual operator*(const Dual& a, const Dual& b) {
+  [[gnu::always_inline]] friend Dual operator+(Dual a, const Dual& b) { return a += b; }
+  [[gnu::always_inline]] friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
+  [[gnu::always_inline]] friend Dual operator+(const Dual& a) { return a; }
+  [[gnu::always_inline]] friend Dual operator-(const Dual& a) { return chain(a, -a.value, Real(-1)); }
+  [[gnu::always_inline]] friend Dual operator*(const Dual& a, const Dual& b) {
     Dual y;
     y.value = a.value * b.value;
-    for (std::size_t k = 0; k < count; ++k)
+    unrolled<count>([&](std::size_t k) __attribute__((always_inline)) {
       y.derivative[k] = a.value * b.derivative[k] + b.value * a.derivative[k];
+    });
     return y;
   }
-  friend Dual operator/(const Dual& a, const Dual& b) {
+  [[gnu::always_inline]] friend Dual operator/(const Dual& a, const Dual& b) {
     Dual y;
     const Real inverse = Real(1) / b.value;
     y.value = a.value * inverse;
-    for (std::size_t k = 0; k < count; ++k)
+    unrolled<count>([&](std::size_t k) __attribute__((always_inline)) {
       y.derivative[k] = (a.derivative[k] - y.value * b.derivative[k]) * inverse;
+    });
     return y;
   }
 
   // Numbers need no derivatives of their own.
   template <class Number>
   requires std::is_arithmetic_v<Number>
-  friend Dual operator*(const Dual& a, Number b) {
+  [[gnu::always_inline]] friend Dual operator*(const Dual& a, Number b) {
     const Real factor(static_cast<double>(b));
     return chain(a, a.value * factor, factor);
   }
   template <class Number>
   requires std::is_arithmetic_v<Number>
-  friend Dual operator*(Number a, const Dual& b) { return b * a; }
+  [[gnu::always_inline]] friend Dual operator*(Number a, const Dual& b) { return b * a; }
   template <class Number>
   requires std::is_arithmetic_v<Number>
-  friend Dual operator/(const Dual& a, Number b) { return a * (1.0 / static_cast<double>(b)); }
+  [[gnu::always_inline]] friend Dual operator/(const Dual& a, Number b) {
+    return a * (1.0 / static_cast<double>(b));
+  }
 
   friend bool operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
   friend bool operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
