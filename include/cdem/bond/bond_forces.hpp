@@ -358,7 +358,7 @@ private:
   }
 
   /// The state of bond `b` once it has followed the deformation.
-  State updated(BondIndex b, const Deformation<>& deformation) const {
+  [[gnu::always_inline]] State updated(BondIndex b, const Deformation<>& deformation) const {
     if constexpr (has_state) {
       State state = memory_.state[b];
       Response<Law>::update(law_, prepared_[b], deformation, state);

@@ -140,11 +140,11 @@ template <bool finite, bool own, class LoadOf>
   core::unrolled<4>([&](std::size_t q) __attribute__((always_inline)) {
     core::unrolled<6>([&](std::size_t k)
                           __attribute__((always_inline)) { deformation[q][k] = motion.deformation[k][q]; });
-    if (static_cast<int>(q) < count)
-      load_of(bond[q], deformation[q], channel[q]);
-    else
-      std::fill(channel[q], channel[q] + 6, 0.0);
   });
+  for (int q = 0; q < count; ++q) // the law is in the code once
+    load_of(bond[q], deformation[q], channel[q]);
+  for (int q = count; q < 4; ++q)
+    std::fill(channel[q], channel[q] + 6, 0.0);
   const auto& c = channel;
   const Four load[6] = {{c[0][0], c[1][0], c[2][0], c[3][0]}, {c[0][1], c[1][1], c[2][1], c[3][1]},
                         {c[0][2], c[1][2], c[2][2], c[3][2]}, {c[0][3], c[1][3], c[2][3], c[3][3]},
