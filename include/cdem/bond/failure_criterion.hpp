@@ -108,7 +108,7 @@ struct BendingStress {
 
 /// Breaks by the largest stress of the beam: tension and compression at its surface with bending, and shear.
 ///
-///     sigma = +-N/A + M a/I,  tau = |F_t|/A + |M_n| a/(2 I)                    Potyondy and Cundall (2004), eq. 15
+///     sigma = +-N/A + M a/I,  tau = |F_t|/A + |M_n| a/(2 I)                      Potyondy and Cundall (2004)
 ///
 /// M as in BendingStress. The mean shear stress of the section is counted, not the 4/3 of it in the middle.
 struct CombinedStress {
