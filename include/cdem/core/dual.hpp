@@ -32,7 +32,7 @@ struct Dual {
   Dual(const Real& constant) requires(!std::is_arithmetic_v<Real>) : value(constant) {}
 
   /// Variable number `index` of the function.
-  [[gnu::always_inline]] static Dual variable(const Real& value, std::size_t index) {
+  static Dual variable(const Real& value, std::size_t index) {
     Dual x;
     x.value = value;
     x.derivative[index] = Real(1);
@@ -40,7 +40,7 @@ struct Dual {
   }
 
   /// f(x) from f and f' at the value: the chain rule.
-  [[gnu::always_inline]] static Dual chain(const Dual& x, const Real& f, const Real& slope) {
+  static Dual chain(const Dual& x, const Real& f, const Real& slope) {
     Dual y;
     y.value = f;
     unrolled<count>([&](std::size_t k)
@@ -48,26 +48,26 @@ struct Dual {
     return y;
   }
 
-  [[gnu::always_inline]] Dual& operator+=(const Dual& other) {
+  Dual& operator+=(const Dual& other) {
     value += other.value;
     unrolled<count>([&](std::size_t k)
                         __attribute__((always_inline)) { derivative[k] += other.derivative[k]; });
     return *this;
   }
-  [[gnu::always_inline]] Dual& operator-=(const Dual& other) {
+  Dual& operator-=(const Dual& other) {
     value -= other.value;
     unrolled<count>([&](std::size_t k)
                         __attribute__((always_inline)) { derivative[k] -= other.derivative[k]; });
     return *this;
   }
-  [[gnu::always_inline]] Dual& operator*=(const Dual& other) { return *this = *this * other; }
-  [[gnu::always_inline]] Dual& operator/=(const Dual& other) { return *this = *this / other; }
+  Dual& operator*=(const Dual& other) { return *this = *this * other; }
+  Dual& operator/=(const Dual& other) { return *this = *this / other; }
 
-  [[gnu::always_inline]] friend Dual operator+(Dual a, const Dual& b) { return a += b; }
-  [[gnu::always_inline]] friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
-  [[gnu::always_inline]] friend Dual operator+(const Dual& a) { return a; }
-  [[gnu::always_inline]] friend Dual operator-(const Dual& a) { return chain(a, -a.value, Real(-1)); }
-  [[gnu::always_inline]] friend Dual operator*(const Dual& a, const Dual& b) {
+  friend Dual operator+(Dual a, const Dual& b) { return a += b; }
+  friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
+  friend Dual operator+(const Dual& a) { return a; }
+  friend Dual operator-(const Dual& a) { return chain(a, -a.value, Real(-1)); }
+  friend Dual operator*(const Dual& a, const Dual& b) {
     Dual y;
     y.value = a.value * b.value;
     unrolled<count>([&](std::size_t k) __attribute__((always_inline)) {
@@ -75,7 +75,7 @@ struct Dual {
     });
     return y;
   }
-  [[gnu::always_inline]] friend Dual operator/(const Dual& a, const Dual& b) {
+  friend Dual operator/(const Dual& a, const Dual& b) {
     Dual y;
     const Real inverse = Real(1) / b.value;
     y.value = a.value * inverse;
@@ -88,18 +88,16 @@ struct Dual {
   // Numbers need no derivatives of their own.
   template <class Number>
   requires std::is_arithmetic_v<Number>
-  [[gnu::always_inline]] friend Dual operator*(const Dual& a, Number b) {
+  friend Dual operator*(const Dual& a, Number b) {
     const Real factor(static_cast<double>(b));
     return chain(a, a.value * factor, factor);
   }
   template <class Number>
   requires std::is_arithmetic_v<Number>
-  [[gnu::always_inline]] friend Dual operator*(Number a, const Dual& b) { return b * a; }
+  friend Dual operator*(Number a, const Dual& b) { return b * a; }
   template <class Number>
   requires std::is_arithmetic_v<Number>
-  [[gnu::always_inline]] friend Dual operator/(const Dual& a, Number b) {
-    return a * (1.0 / static_cast<double>(b));
-  }
+  friend Dual operator/(const Dual& a, Number b) { return a * (1.0 / static_cast<double>(b)); }
 
   friend bool operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
   friend bool operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
