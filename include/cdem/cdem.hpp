@@ -31,6 +31,7 @@
 #include <cdem/core/progress.hpp>
 #include <cdem/core/random.hpp>
 #include <cdem/core/types.hpp>
+#include <cdem/core/unrolled.hpp>
 #include <cdem/core/vector_registers.hpp>
 #include <cdem/geometry/ball_in_box.hpp>
 #include <cdem/geometry/box.hpp>

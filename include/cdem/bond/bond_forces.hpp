@@ -122,7 +122,8 @@ public:
   void advance(const Field& displacement, Field& force,
                core::ThreadPool& pool) requires(has_state || finite_rotation) {
     force.resize(particle_count());
-    std::vector<detail::Rotation> orientation = orientations(displacement, pool);
+    std::vector<detail::Rotation>& orientation = next_orientation_;
+    orient(orientation, displacement, pool);
     std::vector<double> lost(ends_->block_count(), 0.0);
     pool.for_each_block(ends_->block_count(), [&](std::size_t block) {
       [[maybe_unused]] const std::size_t begin = ends_->block_begin(block);
@@ -298,6 +299,11 @@ private:
   /// Orientations at a displacement; empty in small motion.
   std::vector<detail::Rotation> orientations(const Field& displacement, core::ThreadPool& pool) const {
     std::vector<detail::Rotation> orientation;
+    orient(orientation, displacement, pool);
+    return orientation;
+  }
+  void orient([[maybe_unused]] std::vector<detail::Rotation>& orientation,
+              [[maybe_unused]] const Field& displacement, [[maybe_unused]] core::ThreadPool& pool) const {
     if constexpr (finite_rotation) {
       orientation.resize(particle_count());
       core::parallel_for(pool, particle_count(), [&](std::size_t begin, std::size_t end) {
@@ -305,7 +311,6 @@ private:
           orientation[i] = orientation_at(i, displacement);
       });
     }
-    return orientation;
   }
   detail::Rotation orientation_at(std::size_t i, const Field& displacement) const {
     return detail::Rotation::by(displacement[i].angular() - memory_.displacement[i].angular())
@@ -353,7 +358,7 @@ private:
   }
 
   /// The state of bond `b` once it has followed the deformation.
-  State updated(BondIndex b, const Deformation<>& deformation) const {
+  [[gnu::always_inline]] State updated(BondIndex b, const Deformation<>& deformation) const {
     if constexpr (has_state) {
       State state = memory_.state[b];
       Response<Law>::update(law_, prepared_[b], deformation, state);
@@ -388,7 +393,8 @@ private:
   std::vector<detail::RestBond> rest_; ///< [bonds]
   std::vector<Prepared> prepared_;     ///< [bonds]
   Memory memory_;
-  std::vector<State> next_state_; ///< [bonds] written while the present one is read
+  std::vector<State> next_state_;                  ///< [bonds] written while the present one is read
+  std::vector<detail::Rotation> next_orientation_; ///< [particles] likewise
 };
 
 } // namespace cdem::bond

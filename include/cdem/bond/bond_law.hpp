@@ -76,7 +76,7 @@ struct BondLoad {
 template <class Real = double>
 struct Across {
   Real t{}, b{};
-  Real squared() const { return t * t + b * b; }
+  [[gnu::always_inline]] Real squared() const { return t * t + b * b; }
 };
 
 /// How a bond is deformed, in its local frame. Rigid motions give zero.

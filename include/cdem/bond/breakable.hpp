@@ -53,14 +53,15 @@ public:
   Prepared prepare(const BondGeometry& bond) const {
     return {Inner::prepare(this->law(), bond), criterion_.prepare(bond, this->law())};
   }
-  void update(const Prepared& prepared, const Deformation<>& d, State& state) const {
+  [[gnu::always_inline]] void update(const Prepared& prepared, const Deformation<>& d, State& state) const {
     if (state.broken)
       return;
     Inner::update(this->law(), prepared.inner, d, state.inner);
     state.broken = criterion_.exertion(prepared.criterion,
                                        Inner::load(this->law(), prepared.inner, d, state.inner)) >= 1;
   }
-  ChannelLoad<> load(const Prepared& prepared, const Deformation<>& d, const State& state) const {
+  [[gnu::always_inline]] ChannelLoad<> load(const Prepared& prepared, const Deformation<>& d,
+                                            const State& state) const {
     return state.broken ? ChannelLoad<>{} : Inner::load(this->law(), prepared.inner, d, state.inner);
   }
   double energy(const Prepared& prepared, const Deformation<>& d, const State& state) const {

@@ -66,8 +66,8 @@ public:
   Prepared prepare(const BondGeometry& bond) const requires(!LinearLaw<Law>) {
     return {Inner::prepare(this->law(), bond), cohesion(bond)};
   }
-  ChannelLoad<> load(const Prepared& prepared, const Deformation<>& d, const State& state) const
-      requires(!LinearLaw<Law>) {
+  [[gnu::always_inline]] ChannelLoad<> load(const Prepared& prepared, const Deformation<>& d,
+                                            const State& state) const requires(!LinearLaw<Law>) {
     const ChannelLoad<> f = Inner::load(this->law(), prepared.inner, d, state);
     const double c = prepared.cohesion;
     return {c * f.normal,
@@ -83,7 +83,8 @@ public:
       requires(!LinearLaw<Law>) {
     return prepared.cohesion * Inner::tangent(this->law(), prepared.inner, d, state, length);
   }
-  void update(const Prepared& prepared, const Deformation<>& d, State& state) const requires HasState<Law> {
+  [[gnu::always_inline]] void update(const Prepared& prepared, const Deformation<>& d,
+                                     State& state) const requires HasState<Law> {
     Inner::update(this->law(), prepared.inner, d, state);
   }
 

@@ -74,7 +74,7 @@ struct AxialStress {
     return {1 / (area * tensile_strength.between(bond.phase_first, bond.phase_second)),
             1 / (area * compressive_strength.between(bond.phase_first, bond.phase_second))};
   }
-  double exertion(const Prepared& bond, const ChannelLoad<>& load) const {
+  [[gnu::always_inline]] double exertion(const Prepared& bond, const ChannelLoad<>& load) const {
     return load.normal * (load.normal > 0 ? bond.tension : -bond.compression);
   }
   /// @throws core::InvalidInput for a strength that is not above 0
@@ -99,7 +99,7 @@ struct BendingStress {
     const double modulus = detail::Section(law.section_radius(bond)).modulus;
     return {0.5 * bond.length, 1 / (modulus * strength.between(bond.phase_first, bond.phase_second))};
   }
-  double exertion(const Prepared& bond, const ChannelLoad<>& load) const {
+  [[gnu::always_inline]] double exertion(const Prepared& bond, const ChannelLoad<>& load) const {
     return bond.bending * detail::larger_end_moment(load, bond.half_length);
   }
   /// @throws core::InvalidInput for a strength that is not above 0
@@ -108,7 +108,7 @@ struct BendingStress {
 
 /// Breaks by the largest stress of the beam: tension and compression at its surface with bending, and shear.
 ///
-///     sigma = +-N/A + M a/I,  tau = |F_t|/A + |M_n| a/(2 I)                    Potyondy and Cundall (2004), eq. 15
+///     sigma = +-N/A + M a/I,  tau = |F_t|/A + |M_n| a/(2 I)                      Potyondy and Cundall (2004)
 ///
 /// M as in BendingStress. The mean shear stress of the section is counted, not the 4/3 of it in the middle.
 struct CombinedStress {
@@ -134,7 +134,7 @@ struct CombinedStress {
             inverse(compressive_strength),
             inverse(shear_strength)};
   }
-  double exertion(const Prepared& bond, const ChannelLoad<>& load) const {
+  [[gnu::always_inline]] double exertion(const Prepared& bond, const ChannelLoad<>& load) const {
     const double axial = load.normal * bond.area;
     const double bending = detail::larger_end_moment(load, bond.half_length) * bond.modulus;
     const double shear =

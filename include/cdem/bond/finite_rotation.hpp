@@ -31,7 +31,8 @@ public:
   explicit FiniteRotation(Parameters parameters) : Base(Law(std::move(parameters))) {}
 
   Prepared prepare(const BondGeometry& geometry) const { return Inner::prepare(this->law(), geometry); }
-  ChannelLoad<> load(const Prepared& prepared, const Deformation<>& d, const State& state) const {
+  [[gnu::always_inline]] ChannelLoad<> load(const Prepared& prepared, const Deformation<>& d,
+                                            const State& state) const {
     return Inner::load(this->law(), prepared, d, state);
   }
   double energy(const Prepared& prepared, const Deformation<>& d, const State& state) const {
@@ -40,7 +41,8 @@ public:
   Matrix6 tangent(const Prepared& prepared, const Deformation<>& d, const State& state, double length) const {
     return Inner::tangent(this->law(), prepared, d, state, length);
   }
-  void update(const Prepared& prepared, const Deformation<>& d, State& state) const requires HasState<Law> {
+  [[gnu::always_inline]] void update(const Prepared& prepared, const Deformation<>& d,
+                                     State& state) const requires HasState<Law> {
     Inner::update(this->law(), prepared, d, state);
   }
 };

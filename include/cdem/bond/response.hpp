@@ -114,7 +114,8 @@ Matrix6 resistance_of(const Block& block, const BondGeometry& geometry) {
   return deformed.transpose() * block * deformed;
 }
 
-/// One way to ask a law of any kind. Static functions over (law, prepared bond, deformation, state).
+/// One way to ask a law of any kind. Static functions over (law, prepared bond, deformation, state). What a step calls is
+/// always inlined, here and in the laws that wrap, so that it is compiled for the vector registers of the loop around it.
 ///
 /// @tparam Law  its kind is taken in the order linear, force, energy
 template <class Law>
@@ -135,15 +136,15 @@ struct Response {
   using Prepared = decltype(prepare(std::declval<const Law&>(), std::declval<const BondGeometry&>()));
 
   /// Lets the law's memory follow the deformation. Nothing where it has none.
-  static void update(const Law& law, const Prepared& prepared, const Deformation<>& deformation,
-                     State& state) {
+  [[gnu::always_inline]] static void update(const Law& law, const Prepared& prepared,
+                                            const Deformation<>& deformation, State& state) {
     if constexpr (HasState<Law>)
       law.update(prepared, deformation, state);
   }
 
   /// Load at a deformation, N and N m.
-  static ChannelLoad<> load(const Law& law, const Prepared& prepared, const Deformation<>& d,
-                            const State& state) {
+  [[gnu::always_inline]] static ChannelLoad<> load(const Law& law, const Prepared& prepared,
+                                                   const Deformation<>& d, const State& state) {
     if constexpr (GivesChannelStiffness<Law>) {
       return {prepared.normal * d.stretch,
               {prepared.tangential * d.shear.t, prepared.tangential * d.shear.b},
@@ -196,8 +197,8 @@ struct Response {
 
 private:
   template <class Real>
-  static Real energy_of(const Law& law, const Prepared& prepared, const Deformation<Real>& d,
-                        const State& state) {
+  [[gnu::always_inline]] static Real energy_of(const Law& law, const Prepared& prepared,
+                                               const Deformation<Real>& d, const State& state) {
     if constexpr (requires { law.energy(prepared, d, state); })
       return law.energy(prepared, d, state);
     else

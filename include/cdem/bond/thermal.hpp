@@ -56,7 +56,8 @@ public:
     const double rise = 0.5 * (temperature_rise(bond.first) + temperature_rise(bond.second));
     return {Inner::prepare(this->law(), bond), expansion * rise * bond.length};
   }
-  ChannelLoad<> load(const Prepared& prepared, const Deformation<>& d, const State& state) const {
+  [[gnu::always_inline]] ChannelLoad<> load(const Prepared& prepared, const Deformation<>& d,
+                                            const State& state) const {
     return Inner::load(this->law(), prepared.inner, felt(prepared, d), state);
   }
   double energy(const Prepared& prepared, const Deformation<>& d, const State& state) const {
@@ -65,7 +66,8 @@ public:
   Matrix6 tangent(const Prepared& prepared, const Deformation<>& d, const State& state, double length) const {
     return Inner::tangent(this->law(), prepared.inner, felt(prepared, d), state, length);
   }
-  void update(const Prepared& prepared, const Deformation<>& d, State& state) const requires HasState<Law> {
+  [[gnu::always_inline]] void update(const Prepared& prepared, const Deformation<>& d,
+                                     State& state) const requires HasState<Law> {
     Inner::update(this->law(), prepared.inner, felt(prepared, d), state);
   }
 

@@ -38,7 +38,8 @@ public:
   Prepared prepare(const BondGeometry& bond) const {
     return {Inner::prepare(this->law(), bond), bond.phase_first != bond.phase_second};
   }
-  ChannelLoad<> load(const Prepared& prepared, const Deformation<>& d, const State& state) const {
+  [[gnu::always_inline]] ChannelLoad<> load(const Prepared& prepared, const Deformation<>& d,
+                                            const State& state) const {
     ChannelLoad<> f = Inner::load(this->law(), prepared.inner, felt(prepared, d), state);
     if (prepared.across)
       f = {d.stretch < 0 ? f.normal : 0, {}, 0, {}};
@@ -56,7 +57,8 @@ public:
     }
     return slope;
   }
-  void update(const Prepared& prepared, const Deformation<>& d, State& state) const requires HasState<Law> {
+  [[gnu::always_inline]] void update(const Prepared& prepared, const Deformation<>& d,
+                                     State& state) const requires HasState<Law> {
     Inner::update(this->law(), prepared.inner, felt(prepared, d), state);
   }
 

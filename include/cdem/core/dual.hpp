@@ -3,6 +3,8 @@
 /// @file
 /// Numbers that carry their derivatives: forward automatic differentiation of small functions.
 
+#include <cdem/core/unrolled.hpp>
+
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -41,21 +43,21 @@ struct Dual {
   static Dual chain(const Dual& x, const Real& f, const Real& slope) {
     Dual y;
     y.value = f;
-    for (std::size_t k = 0; k < count; ++k)
-      y.derivative[k] = slope * x.derivative[k];
+    unrolled<count>([&](std::size_t k)
+                        __attribute__((always_inline)) { y.derivative[k] = slope * x.derivative[k]; });
     return y;
   }
 
   Dual& operator+=(const Dual& other) {
     value += other.value;
-    for (std::size_t k = 0; k < count; ++k)
-      derivative[k] += other.derivative[k];
+    unrolled<count>([&](std::size_t k)
+                        __attribute__((always_inline)) { derivative[k] += other.derivative[k]; });
     return *this;
   }
   Dual& operator-=(const Dual& other) {
     value -= other.value;
-    for (std::size_t k = 0; k < count; ++k)
-      derivative[k] -= other.derivative[k];
+    unrolled<count>([&](std::size_t k)
+                        __attribute__((always_inline)) { derivative[k] -= other.derivative[k]; });
     return *this;
   }
   Dual& operator*=(const Dual& other) { return *this = *this * other; }
@@ -68,16 +70,18 @@ struct Dual {
   friend Dual operator*(const Dual& a, const Dual& b) {
     Dual y;
     y.value = a.value * b.value;
-    for (std::size_t k = 0; k < count; ++k)
+    unrolled<count>([&](std::size_t k) __attribute__((always_inline)) {
       y.derivative[k] = a.value * b.derivative[k] + b.value * a.derivative[k];
+    });
     return y;
   }
   friend Dual operator/(const Dual& a, const Dual& b) {
     Dual y;
     const Real inverse = Real(1) / b.value;
     y.value = a.value * inverse;
-    for (std::size_t k = 0; k < count; ++k)
+    unrolled<count>([&](std::size_t k) __attribute__((always_inline)) {
       y.derivative[k] = (a.derivative[k] - y.value * b.derivative[k]) * inverse;
+    });
     return y;
   }
 

@@ -13,6 +13,7 @@
 
 #include <Eigen/Dense>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -144,6 +145,35 @@ inline Eigen::VectorXd flat(const SpatialField& field) {
     for (int dof = 0; dof < 6; ++dof)
       vector[6 * static_cast<Eigen::Index>(i) + dof] = field[i][dof];
   return vector;
+}
+
+/// Forces at a displacement.
+template <class Forces>
+SpatialField evaluated(const Forces& forces, const SpatialField& motion, int threads = 1) {
+  cdem::core::ThreadPool pool(threads);
+  SpatialField force;
+  forces.evaluate(motion, force, pool);
+  return force;
+}
+
+/// Largest difference between the forces and central differences of the energy, over the largest force; of every third
+/// particle.
+template <class Forces>
+double gradient_error(const Forces& forces, SpatialField motion, double step) {
+  cdem::core::ThreadPool pool;
+  const SpatialField force = evaluated(forces, motion);
+  double worst = 0;
+  for (std::size_t i = 0; i < motion.size(); i += 3)
+    for (int dof = 0; dof < 6; ++dof) {
+      const double here = motion[i][dof];
+      motion[i][dof] = here + step;
+      const double after = forces.elastic_energy(motion, pool);
+      motion[i][dof] = here - step;
+      const double before = forces.elastic_energy(motion, pool);
+      motion[i][dof] = here;
+      worst = std::max(worst, std::abs((before - after) / (2 * step) - force[i][dof]));
+    }
+  return worst / flat(force).lpNorm<Eigen::Infinity>();
 }
 
 /// K, column by column, from f = -K u.

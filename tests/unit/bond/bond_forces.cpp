@@ -14,6 +14,8 @@ namespace {
 using namespace cdem;
 using body::Body;
 using body::contains;
+using body::evaluated;
+using body::gradient_error;
 using body::SpatialField;
 using bond::BondForces;
 
@@ -32,14 +34,6 @@ double difference(const SpatialField& a, const SpatialField& b) {
     worst = std::max(worst, apart / largest);
   }
   return worst;
-}
-
-template <class Forces>
-SpatialField evaluated(const Forces& forces, const SpatialField& motion, int threads = 1) {
-  core::ThreadPool pool(threads);
-  SpatialField force;
-  forces.evaluate(motion, force, pool);
-  return force;
 }
 
 /// Everything that two kinds of forces say of the same body.
@@ -75,27 +69,6 @@ void expect_linear_forces(const Law& law, double tolerance) {
   CHECK(worst < tolerance);
   CHECK(block < tolerance);
   CHECK(difference(evaluated(tangent, motion), evaluated(expected, motion)) < tolerance);
-}
-
-/// Central differences of the energy against the forces, for each of some degrees of freedom.
-template <class Forces>
-double gradient_error(const Forces& forces, SpatialField motion, double step) {
-  core::ThreadPool pool;
-  const SpatialField force = evaluated(forces, motion);
-  double worst = 0, largest = 0;
-  for (const auto& f : force)
-    largest = std::max({largest, f.linear().norm(), f.angular().norm()});
-  for (std::size_t i = 0; i < motion.size(); i += 3)
-    for (int dof = 0; dof < 6; ++dof) {
-      const double here = motion[i][dof];
-      motion[i][dof] = here + step;
-      const double after = forces.elastic_energy(motion, pool);
-      motion[i][dof] = here - step;
-      const double before = forces.elastic_energy(motion, pool);
-      motion[i][dof] = here;
-      worst = std::max(worst, std::abs((before - after) / (2 * step) - force[i][dof]));
-    }
-  return worst / largest;
 }
 
 } // namespace

@@ -14,18 +14,12 @@ namespace {
 using namespace cdem;
 using body::Body;
 using body::contains;
+using body::evaluated;
 using body::SpatialField;
 using bond::BondForces;
 using bond::Thermal;
 
 const bond::Beam<> beam({.materials = {{1, 0.6}, {30, 0.4}}});
-
-SpatialField evaluated(const auto& forces, const SpatialField& motion) {
-  core::ThreadPool pool(2);
-  SpatialField force;
-  forces.evaluate(motion, force, pool);
-  return force;
-}
 
 double largest(const SpatialField& force) {
   return body::flat(force).lpNorm<Eigen::Infinity>();

@@ -6,6 +6,7 @@
 #include <cdem/bond/detail/bond_ends.hpp>
 #include <cdem/bond/detail/bond_kernel.hpp>
 #include <cdem/bond/detail/bond_kinematics.hpp>
+#include <cdem/core/unrolled.hpp>
 #include <cdem/core/vector_registers.hpp>
 #include <cdem/particles/spatial_field.hpp>
 
@@ -92,11 +93,11 @@ template <class Real, bool finite>
   constexpr std::size_t lanes = lanes_of<Real>;
   constexpr int angular = 4; // where rotations begin in a Spatial
   const double *rest[lanes], *u[lanes], *v[lanes];
-  for (std::size_t q = 0; q < lanes; ++q) {
+  core::unrolled<lanes>([&](std::size_t q) __attribute__((always_inline)) {
     rest[q] = from.rest[bond[q]].direction.data();
     u[q] = from.displacement[ends.first(bond[q])].component;
     v[q] = from.displacement[ends.second(bond[q])].component;
-  }
+  });
   Components<Real> direction;
   Real length, padding;
   gather(direction, length, rest);
@@ -107,61 +108,71 @@ template <class Real, bool finite>
     FiniteEnds<Real> turned;
     const auto &a = motion.displacement_first, &b = motion.displacement_second;
     turned.relative = {b.x - a.x, b.y - a.y, b.z - a.z};
-    for (std::size_t q = 0; q < lanes; ++q) {
+    core::unrolled<lanes>([&](std::size_t q) __attribute__((always_inline)) {
       u[q] = from.orientation[ends.first(bond[q])].v.data();
       v[q] = from.orientation[ends.second(bond[q])].v.data();
-    }
+    });
     gather(turned.v_first, turned.w_first, u);
     gather(turned.v_second, turned.w_second, v);
     return {direction, length, turned};
   } else {
-    for (std::size_t q = 0; q < lanes; ++q) {
+    core::unrolled<lanes>([&](std::size_t q) __attribute__((always_inline)) {
       u[q] += angular;
       v[q] += angular;
-    }
+    });
     gather(motion.rotation_first, padding, u);
     gather(motion.rotation_second, padding, v);
     return {direction, length, motion};
   }
 }
 
-/// Adds four bonds' loads to the particles of [begin, end) among their ends; the first `count` of the four count.
+/// Adds the loads of four bonds to the particles of [begin, end) among their ends; the first `count` of the four count.
 ///
+/// @tparam own     the first ends are in the block; else the second ends alone are
 /// @param load_of  void(BondIndex, const double (&deformation)[6], double (&load)[6])
-template <bool finite, class LoadOf>
+template <bool finite, bool own, class LoadOf>
 [[gnu::always_inline]] inline void add_four(const EndsSource& from, const BondEnds& ends,
-                                            const BondIndex* bond, int count, std::size_t begin,
-                                            std::size_t end, particles::Spatial<>* force, LoadOf& load_of) {
+                                            const BondIndex* bond, int count, std::size_t end,
+                                            particles::Spatial<>* force, LoadOf& load_of) {
   using core::Four;
   const auto motion = motion_of<Four, finite>(from, ends, bond);
-  alignas(32) double deformation[4][6], channel[4][6];
-  for (int q = 0; q < 4; ++q)
-    for (int k = 0; k < 6; ++k)
-      deformation[q][k] = motion.deformation[k][q];
-  for (int q = 0; q < count; ++q)
+  double deformation[4][6], channel[4][6];
+  core::unrolled<4>([&](std::size_t q) __attribute__((always_inline)) {
+    core::unrolled<6>([&](std::size_t k)
+                          __attribute__((always_inline)) { deformation[q][k] = motion.deformation[k][q]; });
+  });
+  for (int q = 0; q < count; ++q) // the law is in the code once
     load_of(bond[q], deformation[q], channel[q]);
   for (int q = count; q < 4; ++q)
     std::fill(channel[q], channel[q] + 6, 0.0);
-  Four load[6] = {}; // GCC 12 sees no element written below
-  for (int k = 0; k < 6; ++k)
-    load[k] = Four{channel[0][k], channel[1][k], channel[2][k], channel[3][k]};
+  const auto& c = channel;
+  const Four load[6] = {{c[0][0], c[1][0], c[2][0], c[3][0]}, {c[0][1], c[1][1], c[2][1], c[3][1]},
+                        {c[0][2], c[1][2], c[2][2], c[3][2]}, {c[0][3], c[1][3], c[2][3], c[3][3]},
+                        {c[0][4], c[1][4], c[2][4], c[3][4]}, {c[0][5], c[1][5], c[2][5], c[3][5]}};
   EndLoads<Four> loads;
   motion.on_ends(loads, load);
   Four pull[4], moment_first[4], moment_second[4];
   spread(pull, {loads.force.x, loads.force.y, loads.force.z});
-  spread(moment_first, {loads.moment_first.x, loads.moment_first.y, loads.moment_first.z});
+  if constexpr (own)
+    spread(moment_first, {loads.moment_first.x, loads.moment_first.y, loads.moment_first.z});
   spread(moment_second, {loads.moment_second.x, loads.moment_second.y, loads.moment_second.z});
-  for (int q = 0; q < count; ++q) {
-    if (const std::size_t first = ends.first(bond[q]); first >= begin) {
-      increase(force[first].component, pull[q]);
-      increase(force[first].component + 4, moment_first[q]);
+  particles::Spatial<> elsewhere; // takes what falls on other blocks, and of bonds that do not count
+  core::unrolled<4>([&](std::size_t q) __attribute__((always_inline)) {
+    const bool counts = static_cast<int>(q) < count;
+    if constexpr (own) {
+      double* const i = (counts ? force + ends.first(bond[q]) : &elsewhere)->component;
+      increase(i, pull[q]);
+      increase(i + 4, moment_first[q]);
     }
-    if (const std::size_t second = ends.second(bond[q]); second < end) {
-      decrease(force[second].component, pull[q]);
-      increase(force[second].component + 4, moment_second[q]);
-    }
-  }
+    const std::size_t second = ends.second(bond[q]);
+    double* const j = (counts && second < end ? force + second : &elsewhere)->component;
+    decrease(j, pull[q]);
+    increase(j + 4, moment_second[q]);
+  });
 }
+
+/// Bonds ahead whose ends are asked for from memory.
+inline constexpr BondIndex bonds_ahead = 32;
 
 /// Forces on one block of particles, which they overwrite: its own bonds in order, then those that enter it.
 template <bool finite, class LoadOf>
@@ -174,16 +185,22 @@ template <bool finite, class LoadOf>
   BondIndex four[4];
   for (BondIndex b = ends.own_begin(begin); b < own_end; b += 4) {
     const int count = static_cast<int>(std::min<BondIndex>(4, own_end - b));
-    for (int q = 0; q < 4; ++q)
-      four[q] = b + static_cast<BondIndex>(std::min(q, count - 1));
-    add_four<finite>(from, ends, four, count, begin, end, force, load_of);
+    core::unrolled<4>([&](std::size_t q) __attribute__((always_inline)) {
+      four[q] = std::min<BondIndex>(b + q, own_end - 1);
+      const std::size_t ahead = ends.second(std::min<BondIndex>(b + q + bonds_ahead, own_end - 1));
+      __builtin_prefetch(from.displacement + ahead);
+      if constexpr (finite)
+        __builtin_prefetch(from.orientation + ahead);
+    });
+    add_four<finite, true>(from, ends, four, count, end, force, load_of);
   }
   const auto entering = ends.entering(block);
   for (std::size_t k = 0; k < entering.size(); k += 4) {
     const int count = static_cast<int>(std::min<std::size_t>(4, entering.size() - k));
-    for (int q = 0; q < 4; ++q)
-      four[q] = entering[k + static_cast<std::size_t>(std::min(q, count - 1))];
-    add_four<finite>(from, ends, four, count, begin, end, force, load_of);
+    core::unrolled<4>([&](std::size_t q) __attribute__((always_inline)) {
+      four[q] = entering[std::min(k + q, entering.size() - 1)];
+    });
+    add_four<finite, false>(from, ends, four, count, end, force, load_of);
   }
 }
 
