@@ -55,15 +55,7 @@ void add_memory(CheckpointWriter& file, const bond::BondForces<Law>& forces) {
     file.add(name, detail::bytes_as<std::array<std::uint8_t, sizeof(Value)>>(values));
   };
   add("bond.state", memory.state);
-  if constexpr (requires { memory.displacement; }) {
-    file.add("particle.displacement", memory.displacement);
-  } else {
-    add("bond.deformation", memory.deformation);
-    add("bond.load", memory.load);
-    file.add("bond.energy", memory.energy);
-    file.add("particle.angle", memory.angle);
-    file.add("bond.begun", static_cast<std::uint8_t>(memory.begun));
-  }
+  file.add("particle.displacement", memory.displacement);
   std::vector<std::array<double, 4>> orientation;
   for (const auto& q : memory.orientation)
     orientation.push_back({q.w, q.v.x(), q.v.y(), q.v.z()});
@@ -80,18 +72,9 @@ void read_memory(const CheckpointReader& file, bond::BondForces<Law>& forces) {
   detail::read_bytes(file, "bond.state", memory.state);
   const auto orientation = file.read<std::array<double, 4>>("particle.orientation");
   bool fits = orientation.size() == memory.orientation.size();
-  if constexpr (requires { memory.displacement; }) {
-    const std::size_t count = memory.displacement.size();
-    file.read("particle.displacement", memory.displacement);
-    fits &= memory.displacement.size() == count;
-  } else {
-    detail::read_bytes(file, "bond.deformation", memory.deformation);
-    detail::read_bytes(file, "bond.load", memory.load);
-    file.read("bond.energy", memory.energy);
-    file.read("particle.angle", memory.angle);
-    memory.begun = file.read_value<std::uint8_t>("bond.begun") != 0;
-    fits &= memory.energy.size() == memory.load.size() && memory.angle.size() == memory.orientation.size();
-  }
+  const std::size_t count = memory.displacement.size();
+  file.read("particle.displacement", memory.displacement);
+  fits &= memory.displacement.size() == count;
   if (!fits)
     file.fail("its bonds or particles are those of another body or law");
   for (std::size_t i = 0; i < orientation.size(); ++i) {
