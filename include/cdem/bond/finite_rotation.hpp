@@ -10,6 +10,25 @@
 
 namespace cdem::bond {
 
+namespace detail {
+/// `L::Parameters`, or the law itself where it has none.
+template <class L>
+struct ParametersOf {
+  struct type {
+    L law;
+  };
+  static L make(type parameters) { return std::move(parameters.law); }
+};
+template <class L>
+requires requires {
+  typename L::Parameters;
+}
+struct ParametersOf<L> {
+  using type = typename L::Parameters;
+  static L make(type parameters) { return L(std::move(parameters)); }
+};
+} // namespace detail
+
 /// The wrapped law, in a frame that turns with the bond's ends (corotational, quaternions).
 ///
 /// Strains of a bond stay as small as the law wants them; displacements and rotations of the body are of any size. The
@@ -25,10 +44,11 @@ public:
   static constexpr bool finite_rotation = true;
   using State = typename Base::State;
   using Prepared = typename Inner::Prepared;
-  using Parameters = typename Law::Parameters;
+  using Parameters = typename detail::ParametersOf<Law>::type;
 
   explicit FiniteRotation(Law law) : Base(std::move(law)) {}
-  explicit FiniteRotation(Parameters parameters) : Base(Law(std::move(parameters))) {}
+  explicit FiniteRotation(Parameters parameters)
+      : Base(detail::ParametersOf<Law>::make(std::move(parameters))) {}
 
   Prepared prepare(const BondGeometry& geometry) const { return Inner::prepare(this->law(), geometry); }
   [[gnu::always_inline]] ChannelLoad<> load(const Prepared& prepared, const Deformation<>& d,
