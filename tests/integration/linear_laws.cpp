@@ -69,7 +69,7 @@ particles::Motion solved(const Law& law) {
     held.add({constraint.particle, constraint.dof, 0});
   std::vector<Vec3> reactions;
   const double time_step = 0.8 * integrate::critical_time_step(forces, test.inertia).time_step;
-  particles::SpatialField load(moved.size()), prescribed(moved.size());
+  particles::SpatialField<> load(moved.size()), prescribed(moved.size());
   for (const auto& constraint : test.constraints.list())
     prescribed[constraint.particle][constraint.dof] = constraint.rate;
   forces.evaluate(prescribed, load, pool); // of linear forces: what moving the sides does to the rest
