@@ -72,10 +72,11 @@ TEST_CASE("only the tangential stiffness is another than Beam's, and a slender b
 }
 
 TEST_CASE("a phase without a material is refused") {
-  auto [particles, network] = body::row(2, Vec3::UnitX(), spacing, radius);
-  particles.phase[1] = 1;
+  body::Body pair = body::row(2, Vec3::UnitX(), spacing, radius); // Clang 14 captures no structured binding
+  pair.particles.phase[1] = 1;
   CHECK(body::contains(body::message_of([&] {
-                         bond::LinearForces(TimoshenkoBeam<>({.materials = {ceramic}}), particles, network);
+                         bond::LinearForces(TimoshenkoBeam<>({.materials = {ceramic}}), pair.particles,
+                                            pair.network);
                        }),
                        "phase of particle 1 = 1 is not accepted"));
 }
