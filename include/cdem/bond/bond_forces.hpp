@@ -199,10 +199,8 @@ public:
   void bond_moments(const Field& displacement, std::vector<Vec3>& moments, core::ThreadPool& pool) const {
     moments.resize(bond_count());
     core::parallel_for(pool, bond_count(), [&](std::size_t begin, std::size_t end) {
-      for (BondIndex b = begin; b < end; ++b) {
-        const BondLoad ends = load(b, displacement);
-        moments[b] = 0.5 * (ends.moment_first - ends.moment_second);
-      }
+      for (BondIndex b = begin; b < end; ++b)
+        moments[b] = load(b, displacement).middle_moment();
     });
   }
 

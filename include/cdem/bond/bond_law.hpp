@@ -70,6 +70,9 @@ struct BondLoad {
   Vec3 force;         ///< N, on the first particle; the second gets the opposite
   Vec3 moment_first;  ///< N m, on the first particle, about its centre
   Vec3 moment_second; ///< N m, on the second particle, about its centre
+
+  /// M, N m: what the first half of the bond takes half-way between the ends.
+  Vec3 middle_moment() const { return 0.5 * (moment_first - moment_second); }
 };
 
 /// Two components across a bond, along t and b of its local frame (n, t, b), [L17] section 2.2.

@@ -128,10 +128,8 @@ public:
                     core::ThreadPool& pool) const {
     moments.resize(bond_count());
     core::parallel_for(pool, bond_count(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b) {
-        const BondLoad ends = load(b, displacement);
-        moments[b] = 0.5 * (ends.moment_first - ends.moment_second);
-      }
+      for (std::size_t b = begin; b < end; ++b)
+        moments[b] = load(b, displacement).middle_moment();
     });
   }
 

@@ -5,6 +5,7 @@
 /// another calls it by.
 
 #include <cdem/bond/bond_law.hpp>
+#include <cdem/bond/detail/bond_kinematics.hpp>
 #include <cdem/core/error.hpp>
 
 #include <cmath>
@@ -60,11 +61,9 @@ Deformation<core::Dual<Real, 6>> variables(const Deformation<Real>& d) {
 ///
 /// @param n  a unit vector
 inline Mat3 local_frame(const Vec3& n) {
-  const double sign = n.z() < 0 ? -1 : 1, a = -1 / (sign + n.z()), c = n.x() * n.y() * a;
+  const detail::Frame<double> axes({n.x(), n.y(), n.z()});
   Mat3 frame;
-  frame.col(0) = n;
-  frame.col(1) << 1 + sign * n.x() * n.x() * a, sign * c, -sign * n.x();
-  frame.col(2) << c, sign + n.y() * n.y() * a, -n.y();
+  frame << axes.n.x, axes.t.x, axes.b.x, axes.n.y, axes.t.y, axes.b.y, axes.n.z, axes.t.z, axes.b.z;
   return frame;
 }
 
