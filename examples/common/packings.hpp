@@ -13,8 +13,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace cdem::examples {
 
@@ -278,6 +280,37 @@ ObtainedPacking<Generator> obtain_packing(const typename Generator::Parameters& 
                      {.parameters = identity, .report = report.text});
   }
   return obtained;
+}
+
+/// Makes the packings that the cache lacks, several at a time with one thread each: of many packings that is the quicker way,
+/// since the threads of one packing wait for each other. Without a cache nothing is done.
+/// @param monitor  called by one thread at a time
+/// @throws what obtain_packing() does; packings that were finished before are kept
+template <packing::PackingGenerator Generator, class Judge>
+void make_packings_ahead(const std::vector<typename Generator::Parameters>& wanted, const PackingSource& source,
+                         Judge&& judge, const core::Monitor& monitor, core::ThreadPool& pool) {
+  if (source.cache.empty() || !source.file.empty())
+    return;
+  std::vector<typename Generator::Parameters> missing;
+  std::error_code ignored;
+  for (const auto& parameters : wanted)
+    if (!std::filesystem::exists(cached_packing<Generator>(parameters, source), ignored))
+      missing.push_back(parameters);
+  if (missing.size() < static_cast<std::size_t>(pool.size()))
+    return; // fewer than threads: each is made in its turn, by all of them
+  std::mutex one_at_a_time;
+  std::vector<double> fraction(missing.size(), 0);
+  pool.for_each_block(missing.size(), [&](std::size_t number) {
+    const core::Monitor own([&](const core::Progress& progress) {
+      const std::lock_guard lock(one_at_a_time);
+      fraction[number] = progress.fraction;
+      double sum = 0;
+      for (const double done : fraction)
+        sum += done / static_cast<double>(missing.size());
+      monitor.report({std::to_string(missing.size()) + " packings", sum, progress.detail});
+    });
+    obtain_packing<Generator>(missing[number], source, judge, own);
+  });
 }
 
 } // namespace cdem::examples

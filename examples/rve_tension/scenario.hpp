@@ -25,23 +25,15 @@
 #include <vector>
 
 #include "common/packings.hpp"
+#include "common/paper_materials.hpp"
 #include "statics.hpp"
 
 namespace cdem::examples::rve_tension {
 
-/// A material of the paper with its printed micro parameters and what it prints for them, [L17] section 2.3.
-struct Material {
-  std::string name;
-  bond::Material micro;
-  double density;        ///< kg/m^3, of the solid; scaled to the time step (not in the paper)
-  double time_step;      ///< s, printed for 700,000 particles
-  double youngs_modulus; ///< Pa, printed
-  double poissons_ratio; ///< printed
-};
+using Material = PaperMaterial;
 
 inline std::vector<Material> paper_materials() {
-  return {{"alumina", {.youngs_modulus = 2536e9, .radius_ratio = 0.545}, 3900, 2.15e-5, 350e9, 0.24},
-          {"silica", {.youngs_modulus = 220.2e9, .radius_ratio = 0.722}, 2200, 5.21e-5, 65e9, 0.20}};
+  return {alumina(), silica()};
 }
 
 /// How the displacements are found; everything after is the same.

@@ -38,6 +38,8 @@
 #include <cdem/geometry/mesh.hpp>
 #include <cdem/geometry/segment.hpp>
 #include <cdem/homogenize/running_average.hpp>
+#include <cdem/homogenize/sample_statistics.hpp>
+#include <cdem/homogenize/static_tension.hpp>
 #include <cdem/homogenize/tension_gauge.hpp>
 #include <cdem/homogenize/tension_recorder.hpp>
 #include <cdem/integrate/critical_time_step.hpp>

@@ -1,0 +1,269 @@
+#pragma once
+
+// How many particles make a representative volume: [L17] section 2.3, figure 6.
+
+#include <cdem/bond/beam.hpp>
+#include <cdem/bond/linear_forces.hpp>
+#include <cdem/homogenize/sample_statistics.hpp>
+#include <cdem/homogenize/static_tension.hpp>
+#include <cdem/packing/lubachevsky_stillinger.hpp>
+#include <cdem/simulation/specimen.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/packings.hpp"
+#include "common/paper_materials.hpp"
+#include "common/static_solver.hpp"
+
+namespace cdem::examples::rve_size {
+
+struct Params {
+  std::vector<std::uint32_t> sizes = {10000, 30000, 100000, 300000, 700000, 2000000}; ///< numbers of particles
+  int packings = 15;                  ///< of each size, [L17] section 2.3
+  int packings_large = 5;             ///< of each size above 700,000
+  int packings_periodic = 3;          ///< of each size on which the whole periodic stiffness is measured too
+  std::uint32_t large = 700000;       ///< largest size that gets all packings
+  packing::LubachevskyStillinger::Parameters packing = {}; ///< particles and seed are set one by one
+  PackingSource source = {};          ///< a packing given stands for all
+  double coordination = 6.2;          ///< Z, [L17] section 2.1
+  Axis axis = Axis::x;                ///< of the tension
+  int threads = 0;
+
+  int count(std::uint32_t size) const {
+    if (!source.file.empty())
+      return 1;
+    return size <= large ? packings : std::min(packings, packings_large);
+  }
+  packing::LubachevskyStillinger::Parameters packing_of(std::uint32_t size, int number) const {
+    auto one = packing;
+    one.particles = size;
+    one.seed = packing.seed + static_cast<std::uint64_t>(number);
+    return one;
+  }
+
+  /// @throws core::InvalidInput for what no stage would accept, before anything is computed or written
+  void validate() const {
+    core::expect(!sizes.empty(), "number of sizes", sizes.size(), "1 or more is expected");
+    core::expect(packings >= 1, "packings", packings, "1 or more is expected");
+    core::expect(packings_large >= 1, "packings of large sizes", packings_large, "1 or more is expected");
+    core::expect(packings_periodic >= 0, "packings of the periodic test", packings_periodic,
+                 "0 or more is expected");
+    core::expect_positive(coordination, "coordination");
+    for (const std::uint32_t size : sizes)
+      packing::LubachevskyStillinger{packing_of(size, 0)};
+  }
+};
+
+/// The ways in which E and nu are measured on one packing.
+enum class Measure : std::uint8_t {
+  faces,    ///< tension of the cut cube, strain from the faces' motion over the distance of their mean centres
+  nominal,  ///< the same over the side of the cube, as the paper defines it; nu has no such measure
+  interior, ///< the same by the slope of displacement over the interior
+  periodic, ///< mean strain on the periodic network, isotropic projection of the 6x6 stiffness
+};
+inline constexpr std::array all_measures{Measure::faces, Measure::nominal, Measure::interior, Measure::periodic};
+
+inline const char* name_of(Measure measure) {
+  constexpr std::array names{"faces", "nominal", "interior", "periodic"};
+  return names[static_cast<std::size_t>(measure)];
+}
+
+/// What one material gave on one packing.
+struct Sample {
+  std::uint32_t particles = 0;
+  std::uint64_t seed = 0;
+  std::string material;
+  std::array<double, all_measures.size()> youngs_modulus; ///< [measures] Pa, NaN where not measured
+  std::array<double, all_measures.size()> poissons_ratio; ///< [measures]
+  double anisotropy = std::numeric_limits<double>::quiet_NaN(); ///< universal index of the periodic stiffness
+  double density = 0;
+  double pressure = std::numeric_limits<double>::quiet_NaN(); ///< reduced, of the packing; NaN for a file
+  double eps = 0;           ///< of eq. 1, cut cube
+  double eps_periodic = std::numeric_limits<double>::quiet_NaN();
+  double solve_seconds = 0; ///< wall clock of the tension test
+
+  Sample() {
+    youngs_modulus.fill(std::numeric_limits<double>::quiet_NaN());
+    poissons_ratio.fill(std::numeric_limits<double>::quiet_NaN());
+  }
+  bool measured(Measure measure) const {
+    return std::isfinite(youngs_modulus[static_cast<std::size_t>(measure)]);
+  }
+};
+
+/// Every sample, and what they say of each size.
+struct Result {
+  std::vector<Sample> samples; ///< by size, seed, material
+
+  std::vector<std::uint32_t> sizes() const {
+    std::vector<std::uint32_t> found;
+    for (const Sample& sample : samples)
+      found.push_back(sample.particles);
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+  }
+
+  /// Statistics of one quantity over the packings of a size.
+  homogenize::SampleStatistics statistics(std::uint32_t size, const std::string& material,
+                                          const std::function<double(const Sample&)>& quantity) const {
+    std::vector<double> values;
+    for (const Sample& sample : samples)
+      if (sample.particles == size && sample.material == material)
+        values.push_back(quantity(sample));
+    return homogenize::sample_statistics(values);
+  }
+  homogenize::SampleStatistics youngs_modulus(std::uint32_t size, const std::string& material,
+                                              Measure measure) const {
+    return statistics(size, material, [measure](const Sample& sample) {
+      return sample.youngs_modulus[static_cast<std::size_t>(measure)];
+    });
+  }
+  homogenize::SampleStatistics poissons_ratio(std::uint32_t size, const std::string& material,
+                                              Measure measure) const {
+    return statistics(size, material, [measure](const Sample& sample) {
+      return sample.poissons_ratio[static_cast<std::size_t>(measure)];
+    });
+  }
+
+  /// The body without faces: E against N^(-1/3), the part of the particles that lie at the faces, followed to 0.
+  /// @return  the line, if there are two sizes or more of two packings or more
+  std::optional<homogenize::Line> limit(const std::string& material, Measure measure) const {
+    std::vector<double> x, y, error;
+    for (const std::uint32_t size : sizes())
+      if (const auto sample = youngs_modulus(size, material, measure);
+          sample.count >= 2 && sample.standard_error() > 0) {
+        x.push_back(std::cbrt(1.0 / size));
+        y.push_back(sample.mean);
+        error.push_back(sample.standard_error());
+      }
+    if (x.size() < 2)
+      return std::nullopt;
+    return homogenize::fit_line(x, y, error);
+  }
+};
+
+/// Where samples of an earlier run come from, and where each new one goes at once.
+struct Ledger {
+  std::vector<Sample> kept = {};                                      ///< measured before
+  std::function<void(const std::vector<Sample>&)> keep = [](auto&) {}; ///< called after every packing with all so far
+};
+
+namespace detail {
+
+inline void judge(const packing::LubachevskyStillinger::Report& report) {
+  // One that jams up to a tenth below the density asked for is of use all the same.
+  if (!(report.reason == packing::StopReason::pressure_limit && report.density >= 0.9 * report.wanted_density))
+    report.require_reached();
+}
+
+/// The samples of one packing, one a material.
+inline std::vector<Sample> measure(const Params& params, const ObtainedPacking<packing::LubachevskyStillinger>& made,
+                                   std::uint64_t seed, bool periodic, core::ThreadPool& pool,
+                                   const core::Monitor& monitor) {
+  const auto& packing = made.packing;
+  const simulation::Specimen body =
+      simulation::make_specimen(packing.particles, packing.box, params.coordination, pool);
+  const StaticSolver solver;
+  std::vector<Sample> samples;
+  for (const PaperMaterial& material : {alumina(), silica()}) {
+    const bond::Beam<> law({.materials = {material.micro}});
+    Sample sample;
+    sample.particles = static_cast<std::uint32_t>(packing.particles.size());
+    sample.seed = seed;
+    sample.material = material.name;
+    sample.density = body.density();
+    if (made.reported)
+      sample.pressure = packing.report.pressure;
+    sample.eps = body.eps;
+    const auto put = [&](Measure measure, double youngs_modulus, double poissons_ratio) {
+      sample.youngs_modulus[static_cast<std::size_t>(measure)] = youngs_modulus;
+      sample.poissons_ratio[static_cast<std::size_t>(measure)] = poissons_ratio;
+    };
+    const auto start = std::chrono::steady_clock::now();
+    const auto tension = homogenize::StaticTension{.axis = params.axis}.measure(
+        solver, bond::LinearForces(law, body.particles, body.network), body, pool, monitor);
+    sample.solve_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    put(Measure::faces, tension.faces.youngs_modulus(), tension.faces.poissons_ratio());
+    put(Measure::nominal, tension.faces.nominal_youngs_modulus(), std::numeric_limits<double>::quiet_NaN());
+    put(Measure::interior, tension.interior_youngs_modulus(), tension.interior.poissons_ratio());
+    samples.push_back(std::move(sample));
+  }
+  (void)periodic;
+  return samples;
+}
+
+} // namespace detail
+
+/// Packs, or loads, and measures what the ledger lacks.
+///
+/// Packings are made several at a time, one thread each, and measured one after another by all threads.
+inline Result run(const Params& params, Ledger ledger = {}, const core::Monitor& monitor = {}) {
+  params.validate();
+  core::ThreadPool pool(params.threads);
+  Result result{std::move(ledger.kept)};
+  const auto find = [&](std::uint32_t size, std::uint64_t seed) {
+    return std::find_if(result.samples.begin(), result.samples.end(), [&](const Sample& sample) {
+      return sample.particles == size && sample.seed == seed;
+    });
+  };
+  const auto lacks = [&](std::uint32_t size, int number) {
+    const auto found = find(size, params.packing_of(size, number).seed);
+    return found == result.samples.end() ||
+           (number < params.packings_periodic && !found->measured(Measure::periodic));
+  };
+  const bool given = !params.source.file.empty();
+  double total = 0, done = 0; // in particles, to which the time is nearly proportional
+  for (const std::uint32_t size : params.sizes)
+    for (int number = 0; number < params.count(size); ++number)
+      total += lacks(size, number) ? size : 0;
+
+  for (const std::uint32_t size : params.sizes) {
+    for (int first = 0; first < params.count(size); first += pool.size()) {
+      std::vector<packing::LubachevskyStillinger::Parameters> batch;
+      std::vector<int> numbers;
+      for (int number = first; number < std::min(first + pool.size(), params.count(size)); ++number)
+        if (lacks(size, number)) {
+          batch.push_back(params.packing_of(size, number));
+          numbers.push_back(number);
+        }
+      // of the time of a batch, packing takes about four fifths
+      const double share = static_cast<double>(size) / total;
+      const auto shown = [&](double offset, double weight) {
+        return core::Monitor([&, offset, weight](const core::Progress& progress) {
+          monitor.report({std::to_string(size) + " particles",
+                          done / total + offset + weight * progress.fraction, progress.detail});
+        });
+      };
+      make_packings_ahead<packing::LubachevskyStillinger>(
+          batch, params.source, detail::judge, shown(0, 0.8 * share * static_cast<double>(batch.size())), pool);
+      for (std::size_t k = 0; k < batch.size(); ++k) {
+        const double offset = 0.8 * share * static_cast<double>(batch.size() - k);
+        const auto made = obtain_packing<packing::LubachevskyStillinger>(
+            batch[k], params.source, detail::judge, shown(offset, 0), &pool);
+        const auto samples = detail::measure(params, made, batch[k].seed,
+                                             numbers[k] < params.packings_periodic, pool, shown(offset, 0));
+        std::erase_if(result.samples, [&](const Sample& sample) {
+          return !given && sample.particles == size && sample.seed == batch[k].seed;
+        });
+        result.samples.insert(result.samples.end(), samples.begin(), samples.end());
+        std::stable_sort(result.samples.begin(), result.samples.end(), [](const Sample& a, const Sample& b) {
+          return std::pair(a.particles, a.seed) < std::pair(b.particles, b.seed);
+        });
+        ledger.keep(result.samples);
+        done += size;
+        monitor.report({std::to_string(size) + " particles", std::min(1.0, done / total),
+                        "seed " + std::to_string(batch[k].seed) + ", E " +
+                            core::to_text(1e-9 * samples.front().youngs_modulus[0]) + " GPa"});
+      }
+    }
+  }
+  return result;
+}
+
+} // namespace cdem::examples::rve_size
