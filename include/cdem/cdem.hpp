@@ -23,6 +23,7 @@
 #include <cdem/bond/timoshenko_beam.hpp>
 #include <cdem/bond/unilateral_interface.hpp>
 #include <cdem/boundary/faces.hpp>
+#include <cdem/boundary/periodic_strain.hpp>
 #include <cdem/boundary/symmetric_tension.hpp>
 #include <cdem/core/dual.hpp>
 #include <cdem/core/error.hpp>
@@ -37,9 +38,11 @@
 #include <cdem/geometry/box.hpp>
 #include <cdem/geometry/mesh.hpp>
 #include <cdem/geometry/segment.hpp>
+#include <cdem/homogenize/periodic_stiffness.hpp>
 #include <cdem/homogenize/running_average.hpp>
 #include <cdem/homogenize/sample_statistics.hpp>
 #include <cdem/homogenize/static_tension.hpp>
+#include <cdem/homogenize/stiffness.hpp>
 #include <cdem/homogenize/tension_gauge.hpp>
 #include <cdem/homogenize/tension_recorder.hpp>
 #include <cdem/integrate/critical_time_step.hpp>
