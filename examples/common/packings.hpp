@@ -287,8 +287,9 @@ ObtainedPacking<Generator> obtain_packing(const typename Generator::Parameters& 
 /// @param monitor  called by one thread at a time
 /// @throws what obtain_packing() does; packings that were finished before are kept
 template <packing::PackingGenerator Generator, class Judge>
-void make_packings_ahead(const std::vector<typename Generator::Parameters>& wanted, const PackingSource& source,
-                         Judge&& judge, const core::Monitor& monitor, core::ThreadPool& pool) {
+void make_packings_ahead(const std::vector<typename Generator::Parameters>& wanted,
+                         const PackingSource& source, Judge&& judge, const core::Monitor& monitor,
+                         core::ThreadPool& pool) {
   if (source.cache.empty() || !source.file.empty())
     return;
   std::vector<typename Generator::Parameters> missing;

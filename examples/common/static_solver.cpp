@@ -9,7 +9,8 @@ StaticSolver::Report StaticSolver::solve(const integrate::Problem<bond::LinearFo
                                          const core::Monitor& monitor) const {
   const auto report = integrate::StaticMultigrid({.relative_residual = relative_residual})
                           .solve(problem, motion, pool, monitor);
-  return {report.iterations, report.relative_residual, report.work, report.setup_seconds + report.solve_seconds};
+  return {report.iterations, report.relative_residual, report.work,
+          report.setup_seconds + report.solve_seconds};
 }
 
 } // namespace cdem::examples

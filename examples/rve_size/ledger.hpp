@@ -30,17 +30,19 @@ inline void write_samples(const Params& params, const std::vector<Sample>& sampl
     columns.push_back(std::string("youngs_modulus_") + name_of(measure) + "_pa");
   for (const Measure measure : all_measures)
     columns.push_back(std::string("poissons_ratio_") + name_of(measure));
-  for (const char* name : {"anisotropy", "density", "reduced_pressure", "eps", "eps_periodic", "solve_seconds"})
+  for (const char* name :
+       {"anisotropy", "density", "reduced_pressure", "eps", "eps_periodic", "solve_seconds"})
     columns.push_back(name);
   for (const auto& [name, value] : detail::shared_columns(params))
     columns.push_back(name);
   io::CsvWriter table(path, columns);
   const auto shared = detail::shared_columns(params);
   for (const Sample& s : samples)
-    table.row(s.particles, s.seed, s.material, s.youngs_modulus[0], s.youngs_modulus[1], s.youngs_modulus[2],
-              s.youngs_modulus[3], s.poissons_ratio[0], s.poissons_ratio[1], s.poissons_ratio[2],
-              s.poissons_ratio[3], s.anisotropy, s.density, s.pressure, s.eps, s.eps_periodic, s.solve_seconds,
-              shared[0].second, shared[1].second, shared[2].second, shared[3].second, shared[4].second);
+    table.row(s.particles, s.seed, s.material, s.moduli.by[0].youngs_modulus, s.moduli.by[1].youngs_modulus,
+              s.moduli.by[2].youngs_modulus, s.moduli.by[3].youngs_modulus, s.moduli.by[0].poissons_ratio,
+              s.moduli.by[1].poissons_ratio, s.moduli.by[2].poissons_ratio, s.moduli.by[3].poissons_ratio,
+              s.anisotropy, s.density, s.pressure, s.eps, s.eps_periodic, s.solve_seconds, shared[0].second,
+              shared[1].second, shared[2].second, shared[3].second, shared[4].second);
   table.commit();
 }
 
@@ -69,8 +71,9 @@ inline std::vector<Sample> read_samples(const Params& params, const std::filesys
     samples[r].material = table.rows[r][material];
   for (std::size_t m = 0; m < all_measures.size(); ++m) {
     const std::string measure = name_of(all_measures[m]);
-    take("youngs_modulus_" + measure + "_pa", [m](Sample& s, double v) { s.youngs_modulus[m] = v; });
-    take("poissons_ratio_" + measure, [m](Sample& s, double v) { s.poissons_ratio[m] = v; });
+    take("youngs_modulus_" + measure + "_pa",
+         [m](Sample& s, double v) { s.moduli.by[m].youngs_modulus = v; });
+    take("poissons_ratio_" + measure, [m](Sample& s, double v) { s.moduli.by[m].poissons_ratio = v; });
   }
   take("anisotropy", [](Sample& s, double v) { s.anisotropy = v; });
   take("density", [](Sample& s, double v) { s.density = v; });

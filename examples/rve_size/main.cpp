@@ -15,26 +15,31 @@ int main(int argc, char** argv) {
   examples::PackingOptions packings;
   std::vector<std::uint32_t> sizes;
 
-  CLI::App app("E and nu against the number of particles, over many packings: [L17] section 2.3, figure 6", "rve_size");
+  CLI::App app("E and nu against the number of particles, over many packings: [L17] section 2.3, figure 6",
+               "rve_size");
   common.add_to(app, 500);
   app.get_option("--particles")
       ->description("Largest number of particles: sizes are 10000, 30000, 100000, ... up to it");
-  app.get_option("--seed")->description("Seed of the first packing of each size; the next have the next numbers");
-  app.add_option("--sizes", sizes, "Numbers of particles, separated by commas, instead of those up to --particles")
+  app.get_option("--seed")->description(
+      "Seed of the first packing of each size; the next have the next numbers");
+  app.add_option("--sizes", sizes,
+                 "Numbers of particles, separated by commas, instead of those up to --particles")
       ->delimiter(',')
       ->check(CLI::Range(std::uint32_t{500}, std::uint32_t{100000000}))
       ->excludes(app.get_option("--particles"));
   app.add_option("--packings", params.packings, "Packings of each size up to 700000")->capture_default_str();
-  app.add_option("--packings-large", params.packings_large, "Packings of each size above")->capture_default_str();
+  app.add_option("--packings-large", params.packings_large, "Packings of each size above")
+      ->capture_default_str();
   app.add_option("--packings-periodic", params.packings_periodic,
                  "Packings of each size whose whole periodic stiffness is measured too")
       ->capture_default_str();
   app.add_option("--cov", params.packing.cov, "CoV of the Gaussian radii")->capture_default_str();
-  app.add_option("--density", params.packing.density, "Volume fraction of the packing")->capture_default_str();
+  app.add_option("--density", params.packing.density, "Volume fraction of the packing")
+      ->capture_default_str();
   app.add_option("--growth", params.packing.growth_rate, "Growth rate of the spheres: slower packs denser")
       ->capture_default_str();
-  packings.add_to(app, {"--particles", "--sizes", "--seed", "--packings", "--packings-large", "--cov", "--density",
-                        "--growth"});
+  packings.add_to(app, {"--particles", "--sizes", "--seed", "--packings", "--packings-large", "--cov",
+                        "--density", "--growth"});
   app.add_option("--coordination", params.coordination, "Coordination number Z")->capture_default_str();
   examples::add_choice<Axis>(app, "--axis", params.axis, {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}},
                              "Axis of the tension");
@@ -62,7 +67,8 @@ int main(int argc, char** argv) {
     params.source = packings.source(common.out);
     const bool given = !params.source.file.empty();
     if (given)
-      params.sizes = {static_cast<std::uint32_t>(io::FromFile({.file = params.source.file}).pack().particles.size())};
+      params.sizes = {
+          static_cast<std::uint32_t>(io::FromFile({.file = params.source.file}).pack().particles.size())};
     params.validate();
     const io::OutputDirectory out(common.out);
     const auto table = out.file("samples.csv");
@@ -72,7 +78,9 @@ int main(int argc, char** argv) {
       ledger.kept = rve::read_samples(params, table);
     if (!ledger.kept.empty())
       std::printf("%zu rows of an earlier run are kept: %s\n", ledger.kept.size(), table.c_str());
-    ledger.keep = [&](const std::vector<rve::Sample>& samples) { rve::write_samples(params, samples, table); };
+    ledger.keep = [&](const std::vector<rve::Sample>& samples) {
+      rve::write_samples(params, samples, table);
+    };
 
     const io::Interrupt interrupt;
     io::TerminalProgress progress;

@@ -22,13 +22,14 @@ inline io::Results tabulate(const Result& result) {
         const auto E = result.youngs_modulus(size, material.name, measure);
         if (E.count == 0)
           continue;
-        table.add({material.name + ".youngs_modulus" + condition, "E_M", E.mean, "Pa", material.youngs_modulus,
-                   printed});
+        table.add({material.name + ".youngs_modulus" + condition, "E_M", E.mean, "Pa",
+                   material.youngs_modulus, printed});
         if (E.count >= 2)
-          table.add({material.name + ".youngs_modulus.prediction" + condition, "+-", E.prediction() / E.mean, "1"});
+          table.add(
+              {material.name + ".youngs_modulus.prediction" + condition, "+-", E.prediction() / E.mean, "1"});
         if (const auto nu = result.poissons_ratio(size, material.name, measure); nu.count > 0) {
-          table.add({material.name + ".poissons_ratio" + condition, "nu_M", nu.mean, "1", material.poissons_ratio,
-                     printed});
+          table.add({material.name + ".poissons_ratio" + condition, "nu_M", nu.mean, "1",
+                     material.poissons_ratio, printed});
           if (nu.count >= 2)
             table.add({material.name + ".poissons_ratio.prediction" + condition, "+-", nu.prediction(), "1"});
         }
@@ -81,8 +82,8 @@ inline std::string summary(const Result& result) {
 inline void write(const Result& result, const io::OutputDirectory& out) {
   for (const PaperMaterial& material : {alumina(), silica()}) {
     io::CsvWriter curves(out.file(material.name + "_sizes.csv"),
-                         {"measure", "particles", "packings", "youngs_modulus_pa", "youngs_modulus_prediction_pa",
-                          "poissons_ratio", "poissons_ratio_prediction"});
+                         {"measure", "particles", "packings", "youngs_modulus_pa",
+                          "youngs_modulus_prediction_pa", "poissons_ratio", "poissons_ratio_prediction"});
     for (const Measure measure : all_measures)
       for (const std::uint32_t size : result.sizes()) {
         const auto E = result.youngs_modulus(size, material.name, measure);

@@ -3,35 +3,37 @@
 // How many particles make a representative volume: [L17] section 2.3, figure 6.
 
 #include <cdem/bond/beam.hpp>
-#include <cdem/bond/linear_forces.hpp>
 #include <cdem/homogenize/sample_statistics.hpp>
-#include <cdem/homogenize/static_tension.hpp>
 #include <cdem/packing/lubachevsky_stillinger.hpp>
 #include <cdem/simulation/specimen.hpp>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/measures.hpp"
 #include "common/packings.hpp"
 #include "common/paper_materials.hpp"
-#include "common/static_solver.hpp"
 
 namespace cdem::examples::rve_size {
 
 struct Params {
-  std::vector<std::uint32_t> sizes = {10000, 30000, 100000, 300000, 700000, 2000000}; ///< numbers of particles
-  int packings = 15;                  ///< of each size, [L17] section 2.3
-  int packings_large = 5;             ///< of each size above 700,000
-  int packings_periodic = 3;          ///< of each size on which the whole periodic stiffness is measured too
-  std::uint32_t large = 700000;       ///< largest size that gets all packings
+  std::vector<std::uint32_t> sizes = {10000,  30000,  100000,
+                                      300000, 700000, 2000000}; ///< numbers of particles
+  int packings = 15;                                            ///< of each size, [L17] section 2.3
+  int packings_large = 5;                                       ///< of each size above 700,000
+  int packings_periodic = 3;    ///< of each size on which the whole periodic stiffness is measured too
+  std::uint32_t large = 700000; ///< largest size that gets all packings
   packing::LubachevskyStillinger::Parameters packing = {}; ///< particles and seed are set one by one
-  PackingSource source = {};          ///< a packing given stands for all
-  double coordination = 6.2;          ///< Z, [L17] section 2.1
-  Axis axis = Axis::x;                ///< of the tension
+  PackingSource source = {};                               ///< a packing given stands for all
+  double coordination = 6.2;                               ///< Z, [L17] section 2.1
+  Axis axis = Axis::x;                                     ///< of the tension
   int threads = 0;
 
   int count(std::uint32_t size) const {
@@ -59,41 +61,18 @@ struct Params {
   }
 };
 
-/// The ways in which E and nu are measured on one packing.
-enum class Measure : std::uint8_t {
-  faces,    ///< tension of the cut cube, strain from the faces' motion over the distance of their mean centres
-  nominal,  ///< the same over the side of the cube, as the paper defines it; nu has no such measure
-  interior, ///< the same by the slope of displacement over the interior
-  periodic, ///< mean strain on the periodic network, isotropic projection of the 6x6 stiffness
-};
-inline constexpr std::array all_measures{Measure::faces, Measure::nominal, Measure::interior, Measure::periodic};
-
-inline const char* name_of(Measure measure) {
-  constexpr std::array names{"faces", "nominal", "interior", "periodic"};
-  return names[static_cast<std::size_t>(measure)];
-}
-
 /// What one material gave on one packing.
 struct Sample {
   std::uint32_t particles = 0;
   std::uint64_t seed = 0;
   std::string material;
-  std::array<double, all_measures.size()> youngs_modulus; ///< [measures] Pa, NaN where not measured
-  std::array<double, all_measures.size()> poissons_ratio; ///< [measures]
+  MeasuredModuli moduli;
   double anisotropy = std::numeric_limits<double>::quiet_NaN(); ///< universal index of the periodic stiffness
   double density = 0;
   double pressure = std::numeric_limits<double>::quiet_NaN(); ///< reduced, of the packing; NaN for a file
-  double eps = 0;           ///< of eq. 1, cut cube
+  double eps = 0;                                             ///< of eq. 1, cut cube
   double eps_periodic = std::numeric_limits<double>::quiet_NaN();
   double solve_seconds = 0; ///< wall clock of the tension test
-
-  Sample() {
-    youngs_modulus.fill(std::numeric_limits<double>::quiet_NaN());
-    poissons_ratio.fill(std::numeric_limits<double>::quiet_NaN());
-  }
-  bool measured(Measure measure) const {
-    return std::isfinite(youngs_modulus[static_cast<std::size_t>(measure)]);
-  }
 };
 
 /// Every sample, and what they say of each size.
@@ -120,15 +99,13 @@ struct Result {
   }
   homogenize::SampleStatistics youngs_modulus(std::uint32_t size, const std::string& material,
                                               Measure measure) const {
-    return statistics(size, material, [measure](const Sample& sample) {
-      return sample.youngs_modulus[static_cast<std::size_t>(measure)];
-    });
+    return statistics(size, material,
+                      [measure](const Sample& sample) { return sample.moduli[measure].youngs_modulus; });
   }
   homogenize::SampleStatistics poissons_ratio(std::uint32_t size, const std::string& material,
                                               Measure measure) const {
-    return statistics(size, material, [measure](const Sample& sample) {
-      return sample.poissons_ratio[static_cast<std::size_t>(measure)];
-    });
+    return statistics(size, material,
+                      [measure](const Sample& sample) { return sample.moduli[measure].poissons_ratio; });
   }
 
   /// The body without faces: E against N^(-1/3), the part of the particles that lie at the faces, followed to 0.
@@ -150,20 +127,22 @@ struct Result {
 
 /// Where samples of an earlier run come from, and where each new one goes at once.
 struct Ledger {
-  std::vector<Sample> kept = {};                                      ///< measured before
-  std::function<void(const std::vector<Sample>&)> keep = [](auto&) {}; ///< called after every packing with all so far
+  std::vector<Sample> kept = {};                             ///< measured before
+  std::function<void(const std::vector<Sample>&)> keep = {}; ///< called after every packing with all so far
 };
 
 namespace detail {
 
 inline void judge(const packing::LubachevskyStillinger::Report& report) {
   // One that jams up to a tenth below the density asked for is of use all the same.
-  if (!(report.reason == packing::StopReason::pressure_limit && report.density >= 0.9 * report.wanted_density))
+  if (!(report.reason == packing::StopReason::pressure_limit &&
+        report.density >= 0.9 * report.wanted_density))
     report.require_reached();
 }
 
 /// The samples of one packing, one a material.
-inline std::vector<Sample> measure(const Params& params, const ObtainedPacking<packing::LubachevskyStillinger>& made,
+inline std::vector<Sample> measure(const Params& params,
+                                   const ObtainedPacking<packing::LubachevskyStillinger>& made,
                                    std::uint64_t seed, bool periodic, core::ThreadPool& pool,
                                    const core::Monitor& monitor) {
   const auto& packing = made.packing;
@@ -181,20 +160,18 @@ inline std::vector<Sample> measure(const Params& params, const ObtainedPacking<p
     if (made.reported)
       sample.pressure = packing.report.pressure;
     sample.eps = body.eps;
-    const auto put = [&](Measure measure, double youngs_modulus, double poissons_ratio) {
-      sample.youngs_modulus[static_cast<std::size_t>(measure)] = youngs_modulus;
-      sample.poissons_ratio[static_cast<std::size_t>(measure)] = poissons_ratio;
-    };
     const auto start = std::chrono::steady_clock::now();
-    const auto tension = homogenize::StaticTension{.axis = params.axis}.measure(
-        solver, bond::LinearForces(law, body.particles, body.network), body, pool, monitor);
+    measure_tension(sample.moduli, law, body, params.axis, solver, pool, monitor);
     sample.solve_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    put(Measure::faces, tension.faces.youngs_modulus(), tension.faces.poissons_ratio());
-    put(Measure::nominal, tension.faces.nominal_youngs_modulus(), std::numeric_limits<double>::quiet_NaN());
-    put(Measure::interior, tension.interior_youngs_modulus(), tension.interior.poissons_ratio());
+    if (periodic) {
+      const simulation::Specimen cell =
+          simulation::make_periodic_specimen(packing.particles, packing.box, params.coordination, pool);
+      sample.anisotropy =
+          measure_periodic(sample.moduli, law, cell, solver, pool, monitor).universal_anisotropy();
+      sample.eps_periodic = cell.eps;
+    }
     samples.push_back(std::move(sample));
   }
-  (void)periodic;
   return samples;
 }
 
@@ -215,7 +192,7 @@ inline Result run(const Params& params, Ledger ledger = {}, const core::Monitor&
   const auto lacks = [&](std::uint32_t size, int number) {
     const auto found = find(size, params.packing_of(size, number).seed);
     return found == result.samples.end() ||
-           (number < params.packings_periodic && !found->measured(Measure::periodic));
+           (number < params.packings_periodic && !found->moduli.has(Measure::periodic));
   };
   const bool given = !params.source.file.empty();
   double total = 0, done = 0; // in particles, to which the time is nearly proportional
@@ -241,13 +218,15 @@ inline Result run(const Params& params, Ledger ledger = {}, const core::Monitor&
         });
       };
       make_packings_ahead<packing::LubachevskyStillinger>(
-          batch, params.source, detail::judge, shown(0, 0.8 * share * static_cast<double>(batch.size())), pool);
+          batch, params.source, detail::judge, shown(0, 0.8 * share * static_cast<double>(batch.size())),
+          pool);
       for (std::size_t k = 0; k < batch.size(); ++k) {
         const double offset = 0.8 * share * static_cast<double>(batch.size() - k);
         const auto made = obtain_packing<packing::LubachevskyStillinger>(
             batch[k], params.source, detail::judge, shown(offset, 0), &pool);
-        const auto samples = detail::measure(params, made, batch[k].seed,
-                                             numbers[k] < params.packings_periodic, pool, shown(offset, 0));
+        const auto samples = detail::measure(
+            params, made, batch[k].seed,
+            made.packing.box.periodic[0] && numbers[k] < params.packings_periodic, pool, shown(offset, 0));
         std::erase_if(result.samples, [&](const Sample& sample) {
           return !given && sample.particles == size && sample.seed == batch[k].seed;
         });
@@ -255,11 +234,13 @@ inline Result run(const Params& params, Ledger ledger = {}, const core::Monitor&
         std::stable_sort(result.samples.begin(), result.samples.end(), [](const Sample& a, const Sample& b) {
           return std::pair(a.particles, a.seed) < std::pair(b.particles, b.seed);
         });
-        ledger.keep(result.samples);
+        if (ledger.keep)
+          ledger.keep(result.samples);
         done += size;
         monitor.report({std::to_string(size) + " particles", std::min(1.0, done / total),
                         "seed " + std::to_string(batch[k].seed) + ", E " +
-                            core::to_text(1e-9 * samples.front().youngs_modulus[0]) + " GPa"});
+                            core::to_text(1e-9 * samples.front().moduli[Measure::faces].youngs_modulus) +
+                            " GPa"});
       }
     }
   }

@@ -30,7 +30,8 @@ inline double student_within(double t, std::size_t degrees) {
 /// The t that |T| of Student's distribution stays below with the given probability: 2.145 for 0.95 and 14 degrees.
 /// @throws core::InvalidInput for a probability outside ]0, 1[ or no degree of freedom
 inline double student_quantile(double probability, std::size_t degrees) {
-  core::expect(probability > 0 && probability < 1, "probability", probability, "a number in ]0, 1[ is expected");
+  core::expect(probability > 0 && probability < 1, "probability", probability,
+               "a number in ]0, 1[ is expected");
   core::expect(degrees > 0, "degrees of freedom", degrees, "at least 1 is expected");
   double below = 0, above = 1;
   while (student_within(above, degrees) < probability)
@@ -46,7 +47,8 @@ inline double student_quantile(double probability, std::size_t degrees) {
 struct SampleStatistics {
   std::size_t count = 0;
   double mean = std::numeric_limits<double>::quiet_NaN();
-  double deviation = std::numeric_limits<double>::quiet_NaN(); ///< standard deviation, n - 1 in it; NaN below 2 values
+  double deviation =
+      std::numeric_limits<double>::quiet_NaN(); ///< standard deviation, n - 1 in it; NaN below 2 values
 
   /// Standard error of the mean.
   double standard_error() const { return deviation / std::sqrt(static_cast<double>(count)); }
@@ -56,7 +58,8 @@ struct SampleStatistics {
   double prediction(double probability = 0.95) const {
     if (count < 2)
       return std::numeric_limits<double>::quiet_NaN();
-    return student_quantile(probability, count - 1) * deviation * std::sqrt(1 + 1 / static_cast<double>(count));
+    return student_quantile(probability, count - 1) * deviation *
+           std::sqrt(1 + 1 / static_cast<double>(count));
   }
 };
 
@@ -95,8 +98,8 @@ struct Line {
 /// @param error  [points] standard errors of y, above 0
 /// @throws core::InvalidInput for fewer than two different x, or an error that is not above 0
 inline Line fit_line(std::span<const double> x, std::span<const double> y, std::span<const double> error) {
-  core::expect(x.size() == y.size() && x.size() == error.size() && x.size() >= 2, "number of points", x.size(),
-               "two or more, with as many values and errors, are expected");
+  core::expect(x.size() == y.size() && x.size() == error.size() && x.size() >= 2, "number of points",
+               x.size(), "two or more, with as many values and errors, are expected");
   double w = 0, wx = 0, wy = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     core::expect_positive(error[i], "error of point " + std::to_string(i));

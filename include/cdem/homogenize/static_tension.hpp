@@ -28,7 +28,7 @@ struct StaticTensionReading {
 /// What the explicit test tends to, without its vibrations.
 struct StaticTension {
   Axis axis = Axis::x;
-  double strain = 1e-3;                ///< nominal: way of the loaded face over the side of the box; below 0 compresses
+  double strain = 1e-3; ///< nominal: way of the loaded face over the side of the box; below 0 compresses
   TensionGauge::Parameters gauge = {}; ///< the interior
 
   /// @param solver  any with `solve(problem, motion, pool, monitor)`, such as integrate::StaticMultigrid
@@ -45,7 +45,8 @@ struct StaticTension {
     const auto setup =
         boundary::SymmetricTension{axis, way, body.gap()}.apply(body.particles, body.network, body.box);
     const TensionGauge reader(body.particles, body.network, setup, gauge);
-    const particles::Inertia inertia = particles::solid_spheres(body.particles, std::vector{1.0}); // unused at rest
+    const particles::Inertia inertia =
+        particles::solid_spheres(body.particles, std::vector{1.0}); // unused at rest
     const integrate::Problem<Forces> problem{forces, inertia, setup.constraints};
     particles::Motion motion = particles::Motion::at_rest(body.particles.size());
     solver.solve(problem, motion, pool, monitor);
