@@ -148,6 +148,12 @@ struct Result {
 
 namespace detail {
 
+/// CoV of the radii of a packing given as a file, to three digits.
+inline double sample_cov(const particles::ParticleSet& particles) {
+  const auto radii = homogenize::sample_statistics(particles.radius);
+  return std::round(1e3 * radii.deviation / radii.mean) / 1e3;
+}
+
 inline void judge(const packing::LubachevskyStillinger::Report& report) {
   if (report.reason != packing::StopReason::pressure_limit) // jammed is as good
     report.require_reached();
@@ -208,7 +214,7 @@ inline Result run(const Params& params, const core::Monitor& monitor = {}) {
       density.push_back(packing.particles.solid_volume() / packing.box.volume());
       pressure.push_back(made.reported ? packing.report.pressure : std::numeric_limits<double>::quiet_NaN());
       if (given)
-        kind = {made.packing.report.cov,
+        kind = {detail::sample_cov(packing.particles),
                 packing.box.periodic[0] ? packing::Boundary::periodic : packing::Boundary::walls, false};
       all_jammed &= made.reported && packing.report.reason == packing::StopReason::pressure_limit;
       for (std::size_t c = 0; c < keys.size(); ++c) {

@@ -2,6 +2,7 @@
 
 #include <cdem/bond/beam.hpp>
 #include <cdem/bond/linear_forces.hpp>
+#include <cdem/homogenize/static_tension.hpp>
 #include <cdem/homogenize/tension_recorder.hpp>
 #include <cdem/integrate/density_scaling.hpp>
 #include <cdem/integrate/rayleigh_quotient.hpp>
@@ -145,6 +146,37 @@ TEST_CASE("a simple cubic lattice has its exact modulus along each axis, and no 
     CHECK(std::abs(interior.poissons_ratio()) < 1e-10);
     CHECK(reading.force_fixed == doctest::Approx(reading.force_loaded).epsilon(1e-10));
   }
+}
+
+TEST_CASE(
+    "the static tension test measures what the gauge reads off a solution of its own, whatever the strain") {
+  struct Direct {
+    void solve(const integrate::Problem<bond::LinearForces>& problem, particles::Motion& motion,
+               core::ThreadPool& pool, const core::Monitor&) const {
+      motion = solve_directly(problem, pool);
+    }
+  };
+  const auto body = bodies::shaken_cube(5, 1e-3, 6.2, 11);
+  Test test(body, Axis::y, 1e-6, body.gap());
+  const particles::Motion motion = solve_directly(test.problem(), test.pool);
+  const homogenize::TensionGauge gauge(body.particles, body.network, test.setup);
+  const auto expected =
+      gauge.faces(motion.displacement, integrate::static_reactions(test.problem(), motion, test.pool));
+  const auto within = gauge.interior(motion.displacement);
+  for (const double strain : {1e-3, -2e-5}) {
+    const auto reading = homogenize::StaticTension{.axis = Axis::y, .strain = strain}.measure(
+        Direct{}, test.forces, body, test.pool);
+    CHECK(reading.faces.youngs_modulus() == doctest::Approx(expected.youngs_modulus()).epsilon(1e-9));
+    CHECK(reading.faces.poissons_ratio() == doctest::Approx(expected.poissons_ratio()).epsilon(1e-9));
+    CHECK(reading.interior_youngs_modulus() ==
+          doctest::Approx(within.youngs_modulus(expected.stress)).epsilon(1e-9));
+    CHECK(reading.faces.nominal_strain == doctest::Approx(strain).epsilon(1e-12));
+    // Clapeyron: the work is half of force times way
+    CHECK(reading.work ==
+          doctest::Approx(0.5 * reading.faces.force_loaded * strain * body.box.size().y()).epsilon(1e-9));
+  }
+  CHECK_THROWS_AS(homogenize::StaticTension{.strain = 0}.measure(Direct{}, test.forces, body, test.pool),
+                  core::InvalidInput);
 }
 
 TEST_CASE(
