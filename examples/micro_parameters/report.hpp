@@ -34,6 +34,9 @@ inline io::Results tabulate(const Result& result) {
       const std::string source = material.name == "aluminium" ? "[L17] section 3.2" : "[L17] section 2.3";
       table.add({material.name + ".relative_modulus" + condition_of(one), "E_a", one.relative_modulus[m].mean,
                  "1", material.youngs_modulus / material.micro.youngs_modulus, source});
+      if (m == 0 && one.shear_part == 1 && one.measure != Measure::nominal &&
+          one.measure != Measure::interior)
+        table.add({"network.eps" + condition_of(one), "eps", one.eps});
       if (one.poissons_ratio[m].count > 0)
         table.add({material.name + ".poissons_ratio" + condition_of(one), "nu_M", one.poissons_ratio[m].mean,
                    "1", material.poissons_ratio, source});
@@ -46,7 +49,7 @@ inline io::Results tabulate(const Result& result) {
 
 /// One line a case on a terminal: deviations from the paper in per cent.
 inline std::string lines(const std::vector<Case>& cases) {
-  std::vector<std::vector<std::string>> rows{{"packing", "Z", "law", "measure", "E_a 0.169", "dev. %",
+  std::vector<std::vector<std::string>> rows{{"packing", "Z", "law", "measure", "eps", "E_a 0.169", "dev. %",
                                               "E_a 0.545", "dev. %", "E_a 0.722", "dev. %", "nu 0.169",
                                               "dev. %", "nu 0.545", "dev. %", "nu 0.722", "dev. %", "rms %"}};
   const auto percent = [](double value, double reference) {
@@ -56,7 +59,7 @@ inline std::string lines(const std::vector<Case>& cases) {
   };
   for (const Case& one : cases) {
     std::vector<std::string> row{one.kind.name(), core::to_text(one.coordination), law_of(one),
-                                 name_of(one.measure)};
+                                 name_of(one.measure), io::detail::five_digits(one.eps)};
     for (std::size_t m = 0; m < 3; ++m) {
       const PaperMaterial material = materials()[m];
       row.push_back(io::detail::five_digits(one.relative_modulus[m].mean));
