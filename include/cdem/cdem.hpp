@@ -38,9 +38,13 @@
 #include <cdem/geometry/box.hpp>
 #include <cdem/geometry/mesh.hpp>
 #include <cdem/geometry/segment.hpp>
+#include <cdem/homogenize/calibration_chart.hpp>
+#include <cdem/homogenize/calibration_fit.hpp>
+#include <cdem/homogenize/calibration_measurement.hpp>
 #include <cdem/homogenize/periodic_stiffness.hpp>
 #include <cdem/homogenize/running_average.hpp>
 #include <cdem/homogenize/sample_statistics.hpp>
+#include <cdem/homogenize/standard_charts.hpp>
 #include <cdem/homogenize/static_tension.hpp>
 #include <cdem/homogenize/stiffness.hpp>
 #include <cdem/homogenize/tension_gauge.hpp>
@@ -54,6 +58,7 @@
 #include <cdem/integrate/velocity_verlet.hpp>
 #include <cdem/io/atomic_file.hpp>
 #include <cdem/io/bonds_vtu.hpp>
+#include <cdem/io/calibration_chart.hpp>
 #include <cdem/io/checkpoint.hpp>
 #include <cdem/io/csv.hpp>
 #include <cdem/io/forces_memory.hpp>
