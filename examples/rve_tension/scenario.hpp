@@ -54,6 +54,7 @@ enum class Method : std::uint8_t {
 struct Params {
   packing::LubachevskyStillinger::Parameters packing = {};
   PackingSource source = {}; ///< a packing given, and where those made are kept
+  std::vector<Material> materials = paper_materials();
   double coordination = 6.2; ///< Z, [L17] section 2.1
   Axis axis = Axis::x;       ///< of the tension
   double velocity = 1e-5;    ///< m/s, [L17] section 2.3; statics take it as m
@@ -340,7 +341,7 @@ inline Result run(const Params& params, const core::Monitor& monitor = {}) {
   result.anisotropy = network::anisotropy(result.specimen.network);
   result.degrees = network::degree_histogram(result.specimen.network);
   result.outside_largest = network::clusters(result.specimen.network).outside_largest();
-  for (const Material& material : paper_materials())
+  for (const Material& material : params.materials)
     result.materials.push_back(detail::pull(material, params, result, pool, monitor));
   return result;
 }
