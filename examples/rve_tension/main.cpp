@@ -11,12 +11,21 @@ int main(int argc, char** argv) {
   rve::Params params;
   examples::CommonOptions common;
   common.out = "results/rve_tension";
+  packing::Boundary boundary = packing::Boundary::periodic;
 
   CLI::App app(
       "A cube of bonded particles is pulled: E and nu of alumina and silica glass, [L17] section 2.3",
       "rve_tension");
   common.add_to(app, 500);
-  examples::add_packing_parameters(app, params.packing);
+  app.add_option("--cov", params.packing.cov, "CoV of the Gaussian radii")->capture_default_str();
+  app.add_option("--density", params.packing.density, "Volume fraction of the packing")
+      ->capture_default_str();
+  app.add_option("--growth", params.packing.growth_rate, "Growth rate of the spheres: slower packs denser")
+      ->capture_default_str();
+  examples::add_choice<packing::Boundary>(
+      app, "--boundary", boundary,
+      {{"periodic", packing::Boundary::periodic}, {"walls", packing::Boundary::walls}},
+      "Box of the packing: periodic (then cut to a cube) or walls");
   examples::PackingOptions packings;
   packings.add_to(app, {"--particles", "--seed", "--cov", "--density", "--growth", "--boundary"});
   app.add_option("--coordination", params.coordination, "Coordination number Z")->capture_default_str();
@@ -51,6 +60,7 @@ int main(int argc, char** argv) {
     }
     params.packing.particles = common.particles;
     params.packing.seed = common.seed;
+    params.packing.boundary = boundary;
     params.threads = common.threads;
     params.source = packings.source(common.out);
     params.validate();

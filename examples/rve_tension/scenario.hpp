@@ -59,8 +59,9 @@ struct Params {
   Axis axis = Axis::x;       ///< of the tension
   double velocity = 1e-5;    ///< m/s, [L17] section 2.3; statics take it as m
   Method method = Method::verlet;
-  double safety = 0.5;         ///< D_t, [L17] section 2.3
-  double damping_ratio = 0.01; ///< of the first axial vibration (not in the paper)
+  double relative_residual = 1e-8; ///< of statics and relaxation
+  double safety = 0.5;             ///< D_t, [L17] section 2.3
+  double damping_ratio = 0.01;     ///< of the first axial vibration (not in the paper)
   integrate::DensityScaling scaling = integrate::DensityScaling::per_particle;
   std::uint64_t most_steps = 50000; ///< end of the run where it has not converged before
   homogenize::ConvergenceRule::Parameters convergence = {}; ///< [L17] section 5.3
@@ -291,8 +292,8 @@ inline MaterialResult pull(const Material& material, const Params& params, const
     const core::Monitor shown([&](const core::Progress& progress) {
       monitor.report({material.name, progress.fraction, progress.detail});
     });
-    result.solver = params.method == Method::statics ? solve_by_multigrid(problem, motion, pool, shown)
-                                                     : solve_by_relaxation(problem, motion, pool, shown);
+    const auto solve = params.method == Method::statics ? solve_by_multigrid : solve_by_relaxation;
+    result.solver = solve(problem, motion, pool, shown, params.relative_residual);
     result.converged = true; // solve() throws where it does not
     const std::vector<double> reaction = integrate::static_reactions(problem, motion, pool);
     for (std::size_t c = 0; c < reaction.size(); ++c) // the work of a slow pull is half of force times way

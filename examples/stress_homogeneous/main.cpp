@@ -62,7 +62,7 @@ int main(int argc, char** argv) {
     const auto result = homogeneous::run(params, core::Monitor(progress.listener(), interrupt.flag()));
     progress.end_line();
 
-    std::printf("%s\n", homogeneous::tabulate(result).text().c_str());
+    std::printf("%s\n", homogeneous::headline(result).text().c_str());
     for (const std::string& table :
          {homogeneous::variability_text(result), homogeneous::distribution_text(result),
           homogeneous::estimators_text(result)})

@@ -11,8 +11,8 @@
 
 namespace cdem::examples::stress_homogeneous {
 
-/// CoVs at which the paper names a number of particles a specimen, and that number: [L17] section 2.5.
-inline constexpr std::array<std::pair<double, double>, 2> printed_crossings{{{0.10, 80}, {0.05, 1200}}};
+/// Particles a specimen that the paper names, and the CoV there: [L17] section 2.5.
+inline constexpr std::array<std::pair<double, double>, 2> printed_crossings{{{80, 0.10}, {1200, 0.05}}};
 
 namespace detail {
 
@@ -22,6 +22,19 @@ inline const char* source() {
 
 inline std::string condition_of(const Tessellated& one) {
   return std::string("cells=") + name_of(one.cells) + ",specimens=" + std::to_string(one.specimens);
+}
+
+/// Thickness of a layer without stress under each of the two faces across an axis that would lower the outermost layers of
+/// specimens as much as they are, in mean distances of particles.
+inline double unloaded_layer(const Result& result, int axis) {
+  const auto k = static_cast<std::size_t>(axis);
+  const auto& layers = result.layers;
+  double inner = 0;
+  for (std::size_t n = 1; n + 1 < layers.size(); ++n)
+    inner += layers[n].mean[k] / static_cast<double>(layers.size() - 2);
+  const double missing = 1 - 0.5 * (layers.front().mean[k] + layers.back().mean[k]) / inner;
+  return missing / static_cast<double>(layers.size()) *
+         std::cbrt(static_cast<double>(result.tension.specimen.particles.size()));
 }
 
 inline void add_body(io::Results& table, const std::string& name, const Result& result) {
@@ -37,6 +50,8 @@ inline void add_body(io::Results& table, const std::string& name, const Result& 
              result.strain * m.moduli.youngs_modulus, "E times strain of this packing"});
   table.add({name + ".stress.mean", "sigma_xx", result.mean_stress, "Pa", result.face_stress,
              "E times strain of this packing"});
+  table.add({name + ".stress.mean[e=interior]", "sigma_xx", result.mean_stress, "Pa", result.interior_stress,
+             "E of the interior times the strain of the faces"});
   table.add({name + ".stress.mean[e=printed]", "sigma_xx",
              result.mean_stress * m.material.youngs_modulus / m.moduli.youngs_modulus, "Pa", 243.3e6,
              source()});
@@ -45,6 +60,9 @@ inline void add_body(io::Results& table, const std::string& name, const Result& 
              result.mean_stress / result.face_stress *
                  result.tension.specimen.box.size()[core::index_of(result.axis())],
              "mean stress over F/S, times the side"});
+  for (int k = 0; k < 3 && result.layers.size() > 2; ++k)
+    table.add({name + ".stress.unloaded_layer[face=" + std::string(1, "xyz"[k]) + "]", "d",
+               unloaded_layer(result, k), "spacing"});
   table.add({name + ".solver.outer_iterations", "", static_cast<double>(m.solver.iterations)});
   table.add({name + ".solver.relative_residual", "", m.solver.relative_residual});
 }
@@ -63,6 +81,7 @@ inline void add_tessellation(io::Results& table, const std::string& name, const 
   table.add({name + ".stress.relative_maximum" + at, "max/mean", one.all.maximum / mean, "1",
              printed(344.4e6), figure ? source() : ""});
   table.add({name + ".stress.cov" + at, "CoV", one.all.cov()});
+  table.add({name + ".stress.cov[" + condition_of(one) + ",part=between_faces]", "CoV", one.surface});
   if (!one.interior)
     return;
   const std::string inside = "[" + condition_of(one) + ",body=interior]";
@@ -79,7 +98,15 @@ inline void add_curve(io::Results& table, const std::string& name, const std::st
   table.add({name + ".stress.cov_exponent[" + condition + "]", "", law.exponent, "1", -0.5,
              "independent specimens"});
   table.add({name + ".stress.cov_exponent_error[" + condition + "]", "", law.error});
-  for (const auto& [cov, particles] : printed_crossings) {
+  const TwoParts parts = two_parts(curve),
+                 printed = two_parts({printed_crossings.begin(), printed_crossings.end()});
+  const auto beside = [&](double value) { return compare ? std::optional(value) : std::nullopt; };
+  const std::string fitted = compare ? "through the two points of [L17] section 2.5" : "";
+  table.add(
+      {name + ".stress.bulk_cov[" + condition + "]", "", parts.bulk, "1", beside(printed.bulk), fitted});
+  table.add({name + ".stress.surface_variance[" + condition + "]", "", parts.surface, "1",
+             beside(printed.surface), fitted});
+  for (const auto& [particles, cov] : printed_crossings) {
     const Crossing found = crossing(curve, cov);
     table.add({name + ".stress.particles_at_cov[cov=" + core::to_text(cov) + "," + condition +
                    (found.interpolated ? "]" : ",extrapolated]"),
@@ -89,6 +116,17 @@ inline void add_curve(io::Results& table, const std::string& name, const std::st
 }
 
 } // namespace detail
+
+/// The body, and where the CoV of hexahedra falls to the levels of the paper.
+inline io::Results headline(const Result& result) {
+  io::Results table;
+  const std::string& name = result.material().material.name;
+  detail::add_body(table, name, result);
+  for (const bool interior : {false, true})
+    detail::add_curve(table, name, std::string("cells=hexahedra") + (interior ? ",body=interior" : ""),
+                      result.curve(Cells::hexahedra, interior), true);
+  return table;
+}
 
 /// Every figure beside the paper's, or beside what mechanics asks for.
 inline io::Results tabulate(const Result& result) {
@@ -151,8 +189,8 @@ inline std::string aligned(const std::vector<std::vector<std::string>>& rows) {
 /// Figures 9b and 9c as a table: hexahedra, all of them and those of the interior.
 inline std::string variability_text(const Result& result) {
   std::vector<std::vector<std::string>> rows{{"specimens", "particles", "mean, MPa", "min", "max",
-                                              "95 %: from", "to", "CoV %", "interior: mean", "min", "max",
-                                              "CoV %", "extremes at"}};
+                                              "95 %: from", "to", "CoV %", "of faces", "interior: mean",
+                                              "min", "max", "CoV %", "extremes at"}};
   const auto mpa = [](double pascal) { return detail::short_text(1e-6 * pascal, "%.1f"); };
   const auto percent = [](double part) { return detail::short_text(100 * part, "%.2f"); };
   for (const Tessellated* one : result.with(Cells::hexahedra)) {
@@ -178,9 +216,9 @@ inline std::string variability_text(const Result& result) {
 
 /// Normal or log-normal, for the interior of each tessellation in hexahedra and for every other specimen of it.
 inline std::string distribution_text(const Result& result) {
-  std::vector<std::vector<std::string>> rows{{"particles", "sample", "n", "skewness", "+-", "kurtosis", "+-",
-                                              "A2 normal", "p", "A2 log", "p", "ln L ratio", "score",
-                                              "verdict"}};
+  std::vector<std::vector<std::string>> rows{{"particles", "sample", "n", "skewness", "+-", "log-normal's",
+                                              "kurtosis", "+-", "A2 normal", "p", "A2 log", "p", "ln L ratio",
+                                              "score", "verdict"}};
   for (const Tessellated* one : result.with(Cells::hexahedra))
     for (const auto& [sample, scatter] : {std::pair("interior", &one->interior), {"thinned", &one->thinned}})
       if (*scatter) {
@@ -190,6 +228,7 @@ inline std::string distribution_text(const Result& result) {
                                      std::to_string(s.moments.count),
                                      detail::short_text(s.moments.skewness),
                                      detail::short_text(s.moments.skewness_error()),
+                                     detail::short_text(s.cov() * (3 + s.cov() * s.cov())),
                                      detail::short_text(s.moments.excess_kurtosis),
                                      detail::short_text(s.moments.kurtosis_error()),
                                      detail::short_text(s.normal.modified),
@@ -253,13 +292,14 @@ private:
 };
 
 inline void write_variability(const std::filesystem::path& path, const Result& result) {
-  ScatterTable table(path, {"cells", "body", "specimens", "particles", "particles_cov"});
+  ScatterTable table(path, {"cells", "body", "specimens", "particles", "particles_cov", "cov_between_faces"});
   for (const Tessellated& one : result.tessellations)
     for (const auto& [body, scatter] : {std::pair<const char*, const Scatter*>("all", &one.all),
                                         {"interior", one.interior ? &*one.interior : nullptr},
                                         {"thinned", one.thinned ? &*one.thinned : nullptr}})
       if (scatter)
-        table.row(*scatter, name_of(one.cells), body, one.specimens, one.particles, one.particles_cov);
+        table.row(*scatter, name_of(one.cells), body, one.specimens, one.particles, one.particles_cov,
+                  one.surface);
   table.commit();
 }
 

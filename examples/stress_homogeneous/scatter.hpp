@@ -133,6 +133,7 @@ struct Tessellated {
   std::optional<Scatter> interior; ///< of the specimens in no outer layer of hexahedra
   std::optional<Scatter> thinned;  ///< of every other one of these along each axis
   Extreme minimum, maximum;
+  double surface = 0; ///< CoV of the means of classes of specimens: by the faces of the body that they touch
   double along = 0,
          across = 0; ///< correlation of neighbours of the interior, along the load and across; hexahedra
 };
@@ -152,6 +153,29 @@ inline double correlation(const std::vector<double>& values, const stress::tesse
       ++pairs;
     }
   return sum / (pairs * moments.standard_deviation * moments.standard_deviation);
+}
+
+} // namespace detail
+
+namespace detail {
+
+/// Standard deviation of the classes' means over the mean of all: specimens that touch so many faces across the load and so many
+/// along it. What is left of the scatter is within the classes.
+inline double between_classes(const std::vector<double>& values, std::size_t parts, const Places& places,
+                              Axis load, double mean) {
+  std::array<double, 6> sum{}, count{};
+  for (std::size_t s = 0; s < values.size(); ++s) {
+    std::size_t touched = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      touched += places.outermost(s / parts, axis) ? (axis == core::index_of(load) ? 3U : 1U) : 0U;
+    sum[touched] += values[s];
+    count[touched] += 1;
+  }
+  double squares = 0;
+  for (std::size_t k = 0; k < sum.size(); ++k)
+    if (count[k] > 0)
+      squares += count[k] * (sum[k] / count[k] - mean) * (sum[k] / count[k] - mean);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1)) / std::abs(mean);
 }
 
 } // namespace detail
@@ -191,6 +215,7 @@ inline Tessellated judge(const stress::StressField& field, Cells cells,
   core::expect(scatter.has_value(), "number of specimens", all.size(), "8 or more is expected");
   result.all = *scatter;
   result.interior = scatter_of(interior);
+  result.surface = detail::between_classes(all, parts, places, load, result.all.moments.mean);
   result.thinned = scatter_of(thinned);
   const auto numbers = stress::sample_moments(particles);
   result.particles = numbers.mean;
@@ -236,6 +261,35 @@ inline PowerLaw power_law(const Curve& curve) {
   const double error = n > 2 ? std::sqrt(std::max(0.0, yy - slope * xy) / (n - 2) / xx)
                              : std::numeric_limits<double>::quiet_NaN();
   return {slope, error, std::exp(y - slope * x)};
+}
+
+/// CoV^2 = bulk^2/n + surface n^(-1/3): independent particles in the bulk, and a layer under the faces of the body that carries less.
+/// The layer has one thickness d, so that it lowers the specimens at the faces, of edge h, by d/h, and they are a part 2 h/L of all
+/// for each pair of faces: CoV^2 = 6 d^2/(h L) where h is far below L, and h goes as n^(1/3).
+struct TwoParts {
+  double bulk = 0;    ///< CoV of a specimen of one particle, as it were
+  double surface = 0; ///< may come out negative where there is no such layer
+
+  double cov(double particles) const {
+    return std::sqrt(bulk * bulk / particles + surface / std::cbrt(particles));
+  }
+};
+
+/// Least squares in CoV^2, relative to its value at each point; exact through two points.
+/// @throws core::InvalidInput for fewer than two points
+inline TwoParts two_parts(const Curve& curve) {
+  core::expect(curve.size() >= 2, "number of points", curve.size(), "2 or more is expected");
+  double aa = 0, ab = 0, bb = 0, a1 = 0, b1 = 0;
+  for (const auto& [particles, cov] : curve) {
+    const double a = 1 / (particles * cov * cov), b = 1 / (std::cbrt(particles) * cov * cov);
+    aa += a * a;
+    ab += a * b;
+    bb += b * b;
+    a1 += a;
+    b1 += b;
+  }
+  const double determinant = aa * bb - ab * ab;
+  return {std::sqrt(std::max(0.0, (a1 * bb - b1 * ab) / determinant)), (b1 * aa - a1 * ab) / determinant};
 }
 
 /// Where a curve falls to a CoV: between two points of it, or beyond its ends by the power law of the whole.
