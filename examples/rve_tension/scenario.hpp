@@ -59,14 +59,15 @@ struct Params {
   Axis axis = Axis::x;       ///< of the tension
   double velocity = 1e-5;    ///< m/s, [L17] section 2.3; statics take it as m
   Method method = Method::verlet;
-  double relative_residual = 1e-8; ///< of statics and relaxation
-  double safety = 0.5;             ///< D_t, [L17] section 2.3
-  double damping_ratio = 0.01;     ///< of the first axial vibration (not in the paper)
+  double safety = 0.5;         ///< D_t, [L17] section 2.3
+  double damping_ratio = 0.01; ///< of the first axial vibration (not in the paper)
   integrate::DensityScaling scaling = integrate::DensityScaling::per_particle;
   std::uint64_t most_steps = 50000; ///< end of the run where it has not converged before
   homogenize::ConvergenceRule::Parameters convergence = {}; ///< [L17] section 5.3
   double particles_per_specimen = 80;                       ///< [L17] section 2.5: CoV of the stress 10 %
   int threads = 0;
+  /// Of statics and relaxation.
+  double relative_residual = 1e-8;
   std::filesystem::path checkpoints = {}; ///< folder for checkpoints; none when empty
   bool resume = false;                    ///< go on from the checkpoints in it
 

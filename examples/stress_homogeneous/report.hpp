@@ -202,7 +202,8 @@ inline std::string variability_text(const Result& result) {
                                  mpa(one->all.maximum),
                                  mpa(mean - half),
                                  mpa(mean + half),
-                                 percent(one->all.cov())};
+                                 percent(one->all.cov()),
+                                 percent(one->surface)};
     if (one->interior)
       row.insert(row.end(), {mpa(one->interior->moments.mean), mpa(one->interior->minimum),
                              mpa(one->interior->maximum), percent(one->interior->cov())});
