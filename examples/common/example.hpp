@@ -111,6 +111,18 @@ void add_choice(CLI::App& app, const std::string& option, Value& value,
       ->default_str(standard);
 }
 
+/// Adds the options of a packing by the Lubachevsky–Stillinger algorithm; the number of particles and the seed are common ones.
+inline void add_packing_parameters(CLI::App& app, packing::LubachevskyStillinger::Parameters& packing) {
+  app.add_option("--cov", packing.cov, "CoV of the Gaussian radii")->capture_default_str();
+  app.add_option("--density", packing.density, "Volume fraction of the packing")->capture_default_str();
+  app.add_option("--growth", packing.growth_rate, "Growth rate of the spheres: slower packs denser")
+      ->capture_default_str();
+  add_choice<packing::Boundary>(
+      app, "--boundary", packing.boundary,
+      {{"periodic", packing::Boundary::periodic}, {"walls", packing::Boundary::walls}},
+      "Box of the packing: periodic (then cut to a cube) or walls");
+}
+
 /// Runs `body` and turns what goes wrong into one line on stderr and an exit status: 2 for a bad option or value,
 /// 130 for Ctrl-C, 1 for anything else.
 template <class Body>

@@ -46,6 +46,7 @@ enum class Method : std::uint8_t {
 struct Params {
   packing::LubachevskyStillinger::Parameters packing = {};
   PackingSource source = {}; ///< a packing given, and where those made are kept
+  std::vector<Material> materials = paper_materials();
   double coordination = 6.2; ///< Z, [L17] section 2.1
   Axis axis = Axis::x;       ///< of the tension
   double velocity = 1e-5;    ///< m/s, [L17] section 2.3; statics take it as m
@@ -57,6 +58,8 @@ struct Params {
   homogenize::ConvergenceRule::Parameters convergence = {}; ///< [L17] section 5.3
   double particles_per_specimen = 80;                       ///< [L17] section 2.5: CoV of the stress 10 %
   int threads = 0;
+  /// Of statics and relaxation.
+  double relative_residual = 1e-8;
   std::filesystem::path checkpoints = {}; ///< folder for checkpoints; none when empty
   bool resume = false;                    ///< go on from the checkpoints in it
 
@@ -282,8 +285,8 @@ inline MaterialResult pull(const Material& material, const Params& params, const
     const core::Monitor shown([&](const core::Progress& progress) {
       monitor.report({material.name, progress.fraction, progress.detail});
     });
-    result.solver = params.method == Method::statics ? solve_by_multigrid(problem, motion, pool, shown)
-                                                     : solve_by_relaxation(problem, motion, pool, shown);
+    const auto solve = params.method == Method::statics ? solve_by_multigrid : solve_by_relaxation;
+    result.solver = solve(problem, motion, pool, shown, params.relative_residual);
     result.converged = true; // solve() throws where it does not
     const std::vector<double> reaction = integrate::static_reactions(problem, motion, pool);
     for (std::size_t c = 0; c < reaction.size(); ++c) // the work of a slow pull is half of force times way
@@ -332,7 +335,7 @@ inline Result run(const Params& params, const core::Monitor& monitor = {}) {
   result.anisotropy = network::anisotropy(result.specimen.network);
   result.degrees = network::degree_histogram(result.specimen.network);
   result.outside_largest = network::clusters(result.specimen.network).outside_largest();
-  for (const Material& material : paper_materials())
+  for (const Material& material : params.materials)
     result.materials.push_back(detail::pull(material, params, result, pool, monitor));
   return result;
 }

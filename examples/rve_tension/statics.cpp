@@ -7,18 +7,18 @@ namespace cdem::examples::rve_tension {
 
 Equilibrium solve_by_multigrid(const integrate::Problem<bond::LinearForces>& problem,
                                particles::Motion& motion, core::ThreadPool& pool,
-                               const core::Monitor& monitor) {
-  const auto report =
-      integrate::StaticMultigrid({.relative_residual = 1e-8}).solve(problem, motion, pool, monitor);
+                               const core::Monitor& monitor, double relative_residual) {
+  const auto report = integrate::StaticMultigrid({.relative_residual = relative_residual})
+                          .solve(problem, motion, pool, monitor);
   return {static_cast<std::uint64_t>(report.iterations), report.relative_residual, report.work,
           report.setup_seconds + report.solve_seconds};
 }
 
 Equilibrium solve_by_relaxation(const integrate::Problem<bond::LinearForces>& problem,
                                 particles::Motion& motion, core::ThreadPool& pool,
-                                const core::Monitor& monitor) {
-  const auto report =
-      integrate::DynamicRelaxation({.relative_residual = 1e-8}).solve(problem, motion, pool, monitor);
+                                const core::Monitor& monitor, double relative_residual) {
+  const auto report = integrate::DynamicRelaxation({.relative_residual = relative_residual})
+                          .solve(problem, motion, pool, monitor);
   return {report.steps, report.relative_residual, static_cast<double>(report.evaluations), report.seconds};
 }
 

@@ -17,14 +17,15 @@ struct Equilibrium {
   double seconds = 0;           ///< wall clock
 };
 
-/// The equilibrium at unit time, by integrate::StaticMultigrid to a relative residual of 1e-8.
+/// The equilibrium at unit time, by integrate::StaticMultigrid.
+/// @param relative_residual  wanted
 Equilibrium solve_by_multigrid(const integrate::Problem<bond::LinearForces>& problem,
                                particles::Motion& motion, core::ThreadPool& pool,
-                               const core::Monitor& monitor);
+                               const core::Monitor& monitor, double relative_residual = 1e-8);
 
 /// The same by integrate::DynamicRelaxation.
 Equilibrium solve_by_relaxation(const integrate::Problem<bond::LinearForces>& problem,
                                 particles::Motion& motion, core::ThreadPool& pool,
-                                const core::Monitor& monitor);
+                                const core::Monitor& monitor, double relative_residual = 1e-8);
 
 } // namespace cdem::examples::rve_tension

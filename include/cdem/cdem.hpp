@@ -31,6 +31,7 @@
 #include <cdem/core/parallel.hpp>
 #include <cdem/core/progress.hpp>
 #include <cdem/core/random.hpp>
+#include <cdem/core/student.hpp>
 #include <cdem/core/types.hpp>
 #include <cdem/core/unrolled.hpp>
 #include <cdem/core/vector_registers.hpp>
@@ -97,6 +98,7 @@
 #include <cdem/stress/bond_loads.hpp>
 #include <cdem/stress/closure.hpp>
 #include <cdem/stress/coarse_graining.hpp>
+#include <cdem/stress/distribution.hpp>
 #include <cdem/stress/halo.hpp>
 #include <cdem/stress/kernels.hpp>
 #include <cdem/stress/love_weber.hpp>

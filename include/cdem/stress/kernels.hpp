@@ -76,6 +76,17 @@ public:
     };
     return height_ * radius_ * radius_ * (part(end / radius_) - part(begin / radius_));
   }
+  /// (integral of phi)^2 / integral of phi^2 = 176 pi c^3/455, m^3: the volume of the cell whose average scatters alike in a field
+  /// without correlations, such as the stress of many more bonds than one.
+  double effective_volume() const noexcept {
+    return 176 * std::numbers::pi / 455 * radius_ * radius_ * radius_;
+  }
+  /// The kernel of an effective volume, m^3.
+  /// @throws core::InvalidInput unless it is a finite number above 0
+  static Lucy of_volume(double volume) {
+    core::expect_positive(volume, "effective volume of the kernel", "m^3");
+    return Lucy(std::cbrt(455 * volume / (176 * std::numbers::pi)));
+  }
 
 private:
   struct Place {
@@ -116,6 +127,18 @@ public:
   }
   double first_moment(double begin, double end, double square) const {
     return height_ * bell(square) * width_ * width_ * (bell(begin * begin) - bell(end * end));
+  }
+  /// (integral of phi)^2 / integral of phi^2, m^3, as for Lucy; 8 pi^(3/2) w^3 if nothing is cut off.
+  double effective_volume() const {
+    const double square =
+        std::erf(cutoff_) - 2 / std::sqrt(std::numbers::pi) * cutoff_ * std::exp(-cutoff_ * cutoff_);
+    return 1 / (height_ * height_ * square * std::pow(std::sqrt(std::numbers::pi) * width_, 3));
+  }
+  /// The kernel of an effective volume, m^3.
+  /// @throws core::InvalidInput unless it is a finite number above 0, or for a cut-off that is not accepted
+  static Gaussian of_volume(double volume, double cutoff = 5) {
+    core::expect_positive(volume, "effective volume of the kernel", "m^3");
+    return Gaussian(std::cbrt(volume / Gaussian(1, cutoff).effective_volume()), cutoff);
   }
 
 private:

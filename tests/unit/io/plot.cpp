@@ -46,6 +46,29 @@ void write_isotropy(const std::filesystem::path& path) {
   csv.commit();
 }
 
+/// Tables of examples/stress_homogeneous, those columns alone that are drawn.
+void write_scatter(const std::filesystem::path& folder) {
+  io::CsvWriter variability(folder / "variability.csv",
+                            {"cells", "body", "particles", "mean_pa", "minimum_pa", "maximum_pa", "cov",
+                             "prediction_low_pa", "prediction_high_pa"});
+  io::CsvWriter estimators(folder / "estimators.csv", {"estimator", "particles", "cov", "cov_error"});
+  io::CsvWriter layers(folder / "layers.csv",
+                       {"position", "mean_across_x", "mean_across_y", "mean_across_z"});
+  for (const double n : {30.0, 80.0, 1200.0}) {
+    const double cov = 0.6 / std::sqrt(n), mean = 243e6;
+    for (const char* cells : {"hexahedra", "wedges"})
+      for (const char* body : {"all", "interior"})
+        variability.row(cells, body, n, mean, mean * (1 - 3 * cov), mean * (1 + 3 * cov), cov,
+                        mean * (1 - 2 * cov), mean * (1 + 2 * cov));
+    for (const char* estimator : {"hexahedra", "halo"})
+      estimators.row(estimator, n, cov, 0.02 * cov);
+    layers.row(n / 1300, 0.95, 1.01, 1);
+  }
+  variability.commit();
+  estimators.commit();
+  layers.commit();
+}
+
 void write_specimens(const std::filesystem::path& path) {
   const stress::tessellation::Hexahedra tessellation(geometry::Box::cube(0.01, false), {4, 5, 6});
   stress::StressField field;
@@ -72,12 +95,17 @@ int main(int argc, char** argv) {
   write_curve(folder / "silica_convergence.csv");
   write_angles(folder / "angles.csv");
   write_isotropy(folder / "isotropy.csv");
+  write_scatter(folder);
   write_specimens(folder / "alumina_specimens.vtu");
   io::Results results;
   results.add({.quantity = "alumina.youngs_modulus",
                .value = 357e9,
                .unit = "Pa",
                .reference = 350e9,
+               .source = "[L17]"});
+  results.add({.quantity = "silica.stress.particles_at_cov[cov=0.1]",
+               .value = 54,
+               .reference = 80,
                .source = "[L17]"});
   results.write_csv(folder / "results.csv");
 }

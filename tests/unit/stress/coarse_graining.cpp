@@ -47,6 +47,11 @@ void check_kernel(const Kernel& kernel, double variance) {
   };
   CHECK(shell(2) == doctest::Approx(1).epsilon(1e-10));
   CHECK(shell(4) / 3 == doctest::Approx(variance).epsilon(1e-6)); // along an axis
+  const double squares = quadrature(0, c * (1 - 1e-12), 5000, [&](double r) {
+    return 4 * std::numbers::pi * r * r * kernel.density(r) * kernel.density(r);
+  });
+  CHECK(kernel.effective_volume() == doctest::Approx(1 / squares).epsilon(1e-9));
+  CHECK(Kernel::of_volume(3e-9).effective_volume() == doctest::Approx(3e-9).epsilon(1e-12));
 
   core::Random random(1);
   for (int n = 0; n < 100; ++n) {
@@ -70,6 +75,11 @@ void check_kernel(const Kernel& kernel, double variance) {
 TEST_CASE("the kernels' integrals in closed form are those of quadrature") {
   check_kernel(Lucy(2.5), 2.5 * 2.5 / 12);
   check_kernel(Gaussian(0.4, 7), 0.4 * 0.4);
+  CHECK(Gaussian(0.4, 9).effective_volume() ==
+        doctest::Approx(8 * std::pow(std::numbers::pi, 1.5) * 0.064).epsilon(1e-12));
+  CHECK(Gaussian::of_volume(2, 1.5).effective_volume() == doctest::Approx(2).epsilon(1e-12)); // cut or not
+  CHECK(contains(refusal([] { (void)Lucy::of_volume(0); }), "effective volume of the kernel = 0"));
+  CHECK(contains(refusal([] { (void)Gaussian::of_volume(-1); }), "effective volume of the kernel = -1"));
   // Cut at 2 widths the rest is scaled up.
   const Gaussian cut(0.4, 2);
   CHECK(cut.reach() == doctest::Approx(0.8));
