@@ -279,7 +279,8 @@ private:
       const double elastic = force[dof];
       const double viscous = parameters.damping.beta > 0 ? work.damped[particle][dof] - elastic : 0;
       const double load = problem.load ? (*problem.load)[particle][dof] : 0;
-      const double velocity = rate * now.speed, acceleration = rate * now.acceleration;
+      const double velocity = rate * now.speed;
+      const double acceleration = rate * now.acceleration + 0.0; // 0, not -0, of a rate below 0
       const double as_free = detail::velocity_after(velocity, (elastic + viscous + load) * (1 / mass),
                                                     stage.advance, 1 / (1 + alpha * stage.advance));
       const double gained = velocity * velocity - as_free * as_free;
