@@ -153,6 +153,10 @@ TEST_CASE("bad parameters are refused before anything is computed or written") {
   refuse([&](rve::Params& p) { p.safety = 1; }, "safety");
   refuse([&](rve::Params& p) { p.most_steps = 10; }, "steps");
   refuse([&](rve::Params& p) { p.particles_per_specimen = 1e6; }, "particles per specimen");
+  refuse([&](rve::Params& p) { p.ramp = -1; }, "ramp");
+  refuse([&](rve::Params& p) { p.steady_after = nan; }, "beginning of the steady averages");
+  refuse([&](rve::Params& p) { p.sample_every = 0; }, "sample_every");
+  refuse([&](rve::Params& p) { p.observe_every = 7; }, "observe_every");
 }
 
 TEST_CASE(
