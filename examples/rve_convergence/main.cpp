@@ -13,6 +13,9 @@ int main(int argc, char** argv) {
       "rve_convergence");
   convergence::Params params;
   rve::TensionOptions options(app, params, "results/rve_convergence");
+  app.add_option("--material", params.material, "alumina, silica or both")
+      ->check(CLI::IsMember({"both", "alumina", "silica"}))
+      ->capture_default_str();
   app.add_option("--steps", params.most_steps, "Steps of the run that is suddenly loaded")
       ->capture_default_str();
   app.add_option("--ramped-steps", params.ramped_steps, "Steps of the run with the ramp")

@@ -15,12 +15,12 @@ namespace rve = rve_tension;
 /// The test of rve_tension; the ramp is that of the second loading.
 struct Params : rve::Params {
   std::uint64_t ramped_steps = 12500; ///< of the run with the ramp, which settles sooner
+  std::string material = "both";      ///< of the paper's, or the name of one
 
   Params() {
     ramp = 4;
     most_steps = 30000;
     until_converged = false;
-    observe_every = 5;
   }
 
   /// @throws core::InvalidInput for what rve_tension does not accept, no ramp, or too few steps to follow it
@@ -133,6 +133,8 @@ inline Result run(const Params& params, const core::Monitor& monitor = {}) {
   ramped.steady_after = params.ramp;
   ramped.most_steps = params.ramped_steps;
   for (const rve::Material& material : rve::paper_materials()) {
+    if (params.material != "both" && params.material != material.name)
+      continue;
     Approach approach;
     approach.statics = detail::without_fields(
         rve::detail::pull(material, material.name + "_static", statics, result.body, pool, monitor));

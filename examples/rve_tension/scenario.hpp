@@ -115,7 +115,7 @@ struct MaterialResult {
   double force_loaded = 0;              ///< N
   double moment_of_reactions = 0;       ///< N m, axial component of sum of F (x) x
   double section = 0;                   ///< m^2
-  double first_frequency = 0;           ///< of the first axial vibration, rad/s, from above
+  double first_frequency = 0;           ///< of the first axial vibration, rad/s, by Rayleigh's quotient
   integrate::Loading loading;           ///< as run
   std::uint64_t steady_from = 0;        ///< step at which the steady averages begin
   integrate::CriticalTimeStep critical; ///< before density scaling
