@@ -48,10 +48,11 @@ inline void add_modulus(io::Results& table, const Params& params, const Approach
     const double last = values.empty() ? std::numeric_limits<double>::quiet_NaN() : values.back();
     table.add({name + conditions, youngs ? "E_M" : "nu_M", last, youngs ? "Pa" : "1", asymptote,
                "static solution of this run"});
+    const auto printed = printed_steps(material, march.loading, modulus, average);
     table.add({name + ".steps" + conditions, "",
                or_nan(homogenize::settled_from(march.steps, values, asymptote, wanted_error,
                                                march.run.motion.step / lasting_part)),
-               "1", printed_steps(material, march.loading, modulus, average), "[L17] section 2.3"});
+               "1", printed, printed ? "[L17] section 2.3" : ""});
   }
   table.add({name + ".steps" + which + ",criterion=paper]", "",
              or_nan(homogenize::met_at(homogenize::ConvergenceRule(params.convergence), march.steps,
