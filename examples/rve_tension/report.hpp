@@ -10,6 +10,8 @@
 #include <cdem/io/results.hpp>
 #include <cdem/io/specimens_vtu.hpp>
 
+#include <cstdio>
+
 #include "scenario.hpp"
 
 namespace cdem::examples::rve_tension {
@@ -17,9 +19,22 @@ namespace cdem::examples::rve_tension {
 /// Reduced pressure above which contacts can be told from gaps.
 constexpr double jammed = 1e4;
 
-/// Every figure beside the paper's, or beside what mechanics asks for.
-inline io::Results tabulate(const Params& params, const Result& result) {
-  io::Results table;
+/// Says in a line each what a packing is not.
+inline void remark(const Params& params, const Result& result) {
+  if (!result.packing_reported)
+    return;
+  if (!result.packing.reached())
+    std::printf("The packing jammed at a density of %.4f, below the %.4g asked for: walls and equal sizes "
+                "keep spheres apart; --growth below %g packs denser.\n",
+                result.packing.density, params.packing.density, params.packing.growth_rate);
+  if (result.packing.pressure < jammed)
+    std::printf("The packing is not jammed (reduced pressure %.0f): hardly any spheres touch, so no "
+                "rattlers are counted.\n",
+                result.packing.pressure);
+}
+
+/// The packing and its bonds, beside the paper's.
+inline void add_body(io::Results& table, const Params& params, const Result& result) {
   const std::string printed = "[L17] section 2.1";
   const auto at_size = [&](std::uint32_t particles, double value) {
     return result.specimen.particles.size() == particles ? std::optional(value) : std::nullopt;
@@ -46,7 +61,12 @@ inline io::Results tabulate(const Params& params, const Result& result) {
   table.add(
       {"network.anisotropy[chance]", "E_k", network::isotropic_deviation(result.specimen.network.size())});
   table.add({"network.hanging_on_nothing", "", static_cast<double>(result.outside_largest)});
+}
 
+/// Every figure beside the paper's, or beside what mechanics asks for.
+inline io::Results tabulate(const Params& params, const Result& result) {
+  io::Results table;
+  add_body(table, params, result);
   for (const MaterialResult& m : result.materials) {
     const std::string& name = m.material.name;
     const std::string source = "[L17] section 2.3";
@@ -95,14 +115,14 @@ inline io::Results tabulate(const Params& params, const Result& result) {
 
 /// The curves of figure 5 and the energies.
 inline void write_curve(const MaterialResult& m, const std::filesystem::path& path) {
-  io::CsvWriter curve(path,
-                      {"step", "time_s", "youngs_modulus_pa", "youngs_modulus_average_pa", "poissons_ratio",
-                       "poissons_ratio_average", "reaction_fixed_n", "reaction_loaded_n", "kinetic_j",
-                       "elastic_j", "external_work_j", "dissipated_j"});
+  io::CsvWriter curve(path, {"step", "time_s", "youngs_modulus_pa", "youngs_modulus_average_pa",
+                             "youngs_modulus_steady_pa", "poissons_ratio", "poissons_ratio_average",
+                             "poissons_ratio_steady", "reaction_fixed_n", "reaction_loaded_n", "kinetic_j",
+                             "elastic_j", "external_work_j", "dissipated_j"});
   for (const auto& s : m.samples)
     curve.row(static_cast<std::uint64_t>(s.step), s.time, s.youngs_modulus, s.youngs_modulus_average,
-              s.poissons_ratio, s.poissons_ratio_average, s.force_fixed, s.force_loaded, s.kinetic, s.elastic,
-              s.external_work, s.dissipated);
+              s.youngs_modulus_steady, s.poissons_ratio, s.poissons_ratio_average, s.poissons_ratio_steady,
+              s.force_fixed, s.force_loaded, s.kinetic, s.elastic, s.external_work, s.dissipated);
   curve.commit();
 }
 

@@ -19,6 +19,7 @@
 #include <cdem/stress/statistics.hpp>
 
 #include <filesystem>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,7 +27,7 @@
 
 #include "common/packings.hpp"
 #include "common/paper_materials.hpp"
-#include "statics.hpp"
+#include "common/static_solver.hpp"
 
 namespace cdem::examples::rve_tension {
 
@@ -54,9 +55,15 @@ struct Params {
   double safety = 0.5;         ///< D_t, [L17] section 2.3
   double damping_ratio = 0.01; ///< of the first axial vibration (not in the paper)
   integrate::DensityScaling scaling = integrate::DensityScaling::per_particle;
+  double ramp = 0; ///< over which the loaded face is accelerated, in periods of that vibration; 0: at once
   std::uint64_t most_steps = 50000; ///< end of the run where it has not converged before
+  bool until_converged = true;      ///< false: most_steps in any case
   homogenize::ConvergenceRule::Parameters convergence = {}; ///< [L17] section 5.3
-  double particles_per_specimen = 80;                       ///< [L17] section 2.5: CoV of the stress 10 %
+  std::uint64_t observe_every = 1;                          ///< steps, of the moduli and their averages
+  std::uint64_t sample_every = 50;                          ///< steps, of the curves
+  /// Periods of the first axial vibration that the steady averages leave out; the interval of the checks without it.
+  std::optional<double> steady_after = {};
+  double particles_per_specimen = 80; ///< [L17] section 2.5: CoV of the stress 10 %
   int threads = 0;
   /// Of statics and relaxation.
   double relative_residual = 1e-8;
@@ -76,6 +83,14 @@ struct Params {
                  particles_per_specimen,
                  "at most the number of particles, " + std::to_string(packing.particles) + ", is expected");
     homogenize::ConvergenceRule{convergence};
+    core::expect_not_negative(ramp, "ramp", "periods");
+    core::expect_not_negative(steady_after.value_or(0), "beginning of the steady averages", "periods");
+    core::expect(sample_every >= 1, "sample_every", sample_every, "1 step or more is expected");
+    core::expect(observe_every >= 1 && sample_every % observe_every == 0 &&
+                     convergence.interval % observe_every == 0,
+                 "observe_every", observe_every,
+                 "a divisor of the " + std::to_string(sample_every) + " steps between samples and the " +
+                     std::to_string(convergence.interval) + " between checks is expected");
     core::expect(most_steps > convergence.interval, "steps", most_steps,
                  "more than the interval of the convergence checks, " + std::to_string(convergence.interval) +
                      ", is expected");
@@ -95,10 +110,13 @@ struct MaterialResult {
   double force_loaded = 0;              ///< N
   double moment_of_reactions = 0;       ///< N m, axial component of sum of F (x) x
   double section = 0;                   ///< m^2
+  double first_frequency = 0;           ///< of the first axial vibration, rad/s, by Rayleigh's quotient
+  integrate::Loading loading;           ///< as run
+  std::uint64_t steady_from = 0;        ///< step at which the steady averages begin
   integrate::CriticalTimeStep critical; ///< before density scaling
   integrate::DensityScalingReport scaling;
   integrate::EnergyLedger energy; ///< at the end
-  Equilibrium solver;             ///< of a static solver
+  StaticSolver::Report solver;    ///< of a static solver
   bool converged = false;
 };
 
@@ -131,11 +149,11 @@ struct Save {
   }
   void operator()(const std::string& name, const std::vector<Vec3>& values) { file.add(name, values); }
   void operator()(const std::string& name, const std::vector<homogenize::TensionSample>& samples) {
-    std::vector<std::array<double, 12>> rows;
+    std::vector<std::array<double, 14>> rows;
     for (const auto& s : samples)
-      rows.push_back({s.step, s.time, s.youngs_modulus, s.youngs_modulus_average, s.poissons_ratio,
-                      s.poissons_ratio_average, s.force_fixed, s.force_loaded, s.kinetic, s.elastic,
-                      s.external_work, s.dissipated});
+      rows.push_back({s.step, s.time, s.youngs_modulus, s.youngs_modulus_average, s.youngs_modulus_steady,
+                      s.poissons_ratio, s.poissons_ratio_average, s.poissons_ratio_steady, s.force_fixed,
+                      s.force_loaded, s.kinetic, s.elastic, s.external_work, s.dissipated});
     file.add(name, rows);
   }
 };
@@ -152,8 +170,9 @@ struct Load {
   void operator()(const std::string& name, std::vector<Vec3>& values) { file.read(name, values); }
   void operator()(const std::string& name, std::vector<homogenize::TensionSample>& samples) {
     samples.clear();
-    for (const auto& r : file.read<std::array<double, 12>>(name))
-      samples.push_back({r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8], r[9], r[10], r[11]});
+    for (const auto& r : file.read<std::array<double, 14>>(name))
+      samples.push_back(
+          {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8], r[9], r[10], r[11], r[12], r[13]});
   }
 
 private:
@@ -219,13 +238,16 @@ inline std::string describe(const Params& params) {
   text << packing_identity<packing::LubachevskyStillinger>(params.packing, params.source)
        << "coordination = " << params.coordination << "\naxis = " << core::name_of(params.axis)
        << "\nvelocity = " << params.velocity << "\nsafety = " << params.safety
-       << "\ndamping_ratio = " << params.damping_ratio << "\nscaling = " << static_cast<int>(params.scaling)
+       << "\ndamping_ratio = " << params.damping_ratio << "\nramp = " << params.ramp
+       << "\nscaling = " << static_cast<int>(params.scaling) << "\nobserve_every = " << params.observe_every
+       << "\nsample_every = " << params.sample_every
+       << "\nsteady_after = " << params.steady_after.value_or(-1)
        << "\ninterval = " << params.convergence.interval << "\ntolerance = " << params.convergence.tolerance
        << '\n';
   return text.str();
 }
 
-/// The paper's way: explicit steps until the averages have converged, with checkpoints.
+/// The paper's way: explicit steps until the averages have converged, with checkpoints under `name`.
 inline void march(const integrate::VelocityVerlet& verlet,
                   const integrate::Problem<bond::LinearForces>& problem, const std::string& name,
                   const Params& params, particles::Motion& motion, Recorder& recorder, core::ThreadPool& pool,
@@ -239,11 +261,12 @@ inline void march(const integrate::VelocityVerlet& verlet,
     const double done = static_cast<double>(motion.step) / static_cast<double>(params.most_steps);
     monitor.report({name, done, progress.detail + " of at most " + std::to_string(params.most_steps)});
   });
+  const auto watch = [&](const integrate::Step& step) { return recorder(step) || !params.until_converged; };
   try {
-    while (!recorder.converged() && motion.step < params.most_steps) {
+    while (!(params.until_converged && recorder.converged()) && motion.step < params.most_steps) {
       // in portions, so that a checkpoint is never far behind
       const auto portion = std::min(params.convergence.interval, params.most_steps - motion.step);
-      verlet.run(problem, motion, portion, pool, std::ref(recorder), shown);
+      verlet.run(problem, motion, portion, pool, watch, shown);
       if (keeps)
         save(checkpoint, identity, motion, recorder);
     }
@@ -256,37 +279,51 @@ inline void march(const integrate::VelocityVerlet& verlet,
   }
 }
 
-inline MaterialResult pull(const Material& material, const Params& params, const Result& shared,
-                           core::ThreadPool& pool, const core::Monitor& monitor) {
+/// One material; `name` is that of the run, for its checkpoint and for who waits.
+inline MaterialResult pull(const Material& material, const std::string& name, const Params& params,
+                           const Result& shared, core::ThreadPool& pool, const core::Monitor& monitor) {
   const simulation::Specimen& specimen = shared.specimen;
   const bond::LinearForces forces(bond::Beam<>({.materials = {material.micro}}), specimen.particles,
                                   specimen.network);
   particles::Inertia inertia = particles::solid_spheres(specimen.particles, std::vector{material.density});
   const integrate::Problem<bond::LinearForces> problem{forces, inertia, shared.setup.constraints};
-  Recorder recorder(specimen.particles, specimen.network, shared.setup, problem, pool,
-                    {.steady_from = params.convergence.interval, .convergence = params.convergence});
   particles::Motion motion = particles::Motion::at_rest(specimen.particles.size());
   MaterialResult result;
   result.material = material;
-
-  if (params.method == Method::verlet) {
+  result.steady_from = params.convergence.interval;
+  const bool moves = params.method == Method::verlet;
+  if (moves) {
     result.critical = integrate::critical_time_step(forces, inertia);
     result.scaling =
         integrate::scale_density(forces, inertia, material.time_step, params.safety, params.scaling, pool);
     const auto k = core::index_of(params.axis);
     const double omega = integrate::first_axial_frequency(problem, specimen.particles, specimen.box.lower[k],
                                                           specimen.box.upper[k], params.axis, pool);
+    result.first_frequency = omega;
+    result.loading.ramp = params.ramp * 2 * std::numbers::pi / omega;
+    if (params.steady_after)
+      result.steady_from = static_cast<std::uint64_t>(
+          std::ceil(*params.steady_after * 2 * std::numbers::pi / omega / material.time_step));
+  }
+  Recorder recorder(specimen.particles, specimen.network, shared.setup, problem, pool,
+                    {.sample_every = params.sample_every,
+                     .steady_from = result.steady_from,
+                     .convergence = params.convergence});
+  if (moves) {
     const integrate::VelocityVerlet verlet(
         {.time_step = material.time_step,
-         .damping = integrate::Damping::of_mode(params.damping_ratio, omega)});
-    march(verlet, problem, material.name, params, motion, recorder, pool, monitor);
+         .damping = integrate::Damping::of_mode(params.damping_ratio, result.first_frequency),
+         .observe_every = params.observe_every,
+         .loading = result.loading});
+    march(verlet, problem, name, params, motion, recorder, pool, monitor);
     result.converged = recorder.converged();
   } else {
     const core::Monitor shown([&](const core::Progress& progress) {
-      monitor.report({material.name, progress.fraction, progress.detail});
+      monitor.report({name, progress.fraction, progress.detail});
     });
-    const auto solve = params.method == Method::statics ? solve_by_multigrid : solve_by_relaxation;
-    result.solver = solve(problem, motion, pool, shown, params.relative_residual);
+    const auto method =
+        params.method == Method::statics ? StaticSolver::Method::multigrid : StaticSolver::Method::relaxation;
+    result.solver = StaticSolver{params.relative_residual, method}.solve(problem, motion, pool, shown);
     result.converged = true; // solve() throws where it does not
     const std::vector<double> reaction = integrate::static_reactions(problem, motion, pool);
     for (std::size_t c = 0; c < reaction.size(); ++c) // the work of a slow pull is half of force times way
@@ -309,13 +346,9 @@ inline MaterialResult pull(const Material& material, const Params& params, const
   return result;
 }
 
-} // namespace detail
-
-/// Packs, bonds and pulls; every stage reports to the monitor.
-inline Result run(const Params& params, const core::Monitor& monitor = {}) {
-  params.validate();
-  core::ThreadPool pool(params.threads);
-  auto [packing, loaded, reported] = detail::make_packing(params, pool, monitor);
+/// Packs and bonds: all that the materials share.
+inline Result prepare(const Params& params, core::ThreadPool& pool, const core::Monitor& monitor) {
+  auto [packing, loaded, reported] = make_packing(params, pool, monitor);
   simulation::Specimen specimen =
       simulation::make_specimen(packing.particles, packing.box, params.coordination, pool);
   const boundary::SymmetricTension tension{params.axis, params.velocity, specimen.gap()};
@@ -335,8 +368,18 @@ inline Result run(const Params& params, const core::Monitor& monitor = {}) {
   result.anisotropy = network::anisotropy(result.specimen.network);
   result.degrees = network::degree_histogram(result.specimen.network);
   result.outside_largest = network::clusters(result.specimen.network).outside_largest();
+  return result;
+}
+
+} // namespace detail
+
+/// Packs, bonds and pulls; every stage reports to the monitor.
+inline Result run(const Params& params, const core::Monitor& monitor = {}) {
+  params.validate();
+  core::ThreadPool pool(params.threads);
+  Result result = detail::prepare(params, pool, monitor);
   for (const Material& material : params.materials)
-    result.materials.push_back(detail::pull(material, params, result, pool, monitor));
+    result.materials.push_back(detail::pull(material, material.name, params, result, pool, monitor));
   return result;
 }
 

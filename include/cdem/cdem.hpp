@@ -55,6 +55,7 @@
 #include <cdem/integrate/density_scaling.hpp>
 #include <cdem/integrate/dynamic_relaxation.hpp>
 #include <cdem/integrate/integrator.hpp>
+#include <cdem/integrate/loading.hpp>
 #include <cdem/integrate/rayleigh_quotient.hpp>
 #include <cdem/integrate/velocity_verlet.hpp>
 #include <cdem/io/atomic_file.hpp>

@@ -110,15 +110,24 @@ TEST_CASE("results do not depend on the number of threads, nor on having been in
   CHECK(same_bytes(resumed, reference));
 }
 
-TEST_CASE("a run in two parts gives the bytes of a run in one") {
+TEST_CASE("a run over a ramp, in two parts, gives the bytes of a run in one") {
   const Folder folder("parts");
   rve::Params params = small();
+  params.ramp = 11; // beyond the first part
+  params.observe_every = 5;
+  const rve::Params at_once = params;
   params.checkpoints = folder.path;
   params.most_steps = 600;
   rve::run(params);
   params.resume = true;
   params.most_steps = 900;
-  CHECK(same_bytes(rve::run(params), rve::run(small())));
+  const rve::Result whole = rve::run(at_once);
+  CHECK(same_bytes(rve::run(params), whole));
+  for (const auto& m : whole.materials) {
+    const double time = 600 * m.material.time_step;
+    CHECK(m.loading.ramp > time);
+    CHECK(m.loading.ramp < 1.5 * time);
+  }
 }
 
 TEST_CASE("a checkpoint of other parameters, or a damaged one, is refused by name") {
@@ -153,6 +162,10 @@ TEST_CASE("bad parameters are refused before anything is computed or written") {
   refuse([&](rve::Params& p) { p.safety = 1; }, "safety");
   refuse([&](rve::Params& p) { p.most_steps = 10; }, "steps");
   refuse([&](rve::Params& p) { p.particles_per_specimen = 1e6; }, "particles per specimen");
+  refuse([&](rve::Params& p) { p.ramp = -1; }, "ramp");
+  refuse([&](rve::Params& p) { p.steady_after = nan; }, "beginning of the steady averages");
+  refuse([&](rve::Params& p) { p.sample_every = 0; }, "sample_every");
+  refuse([&](rve::Params& p) { p.observe_every = 7; }, "observe_every");
 }
 
 TEST_CASE(

@@ -19,8 +19,8 @@ struct TensionSetup {
 /// Tension along one axis with *symmetric boundary conditions*, [L17] section 2.3.
 ///
 /// On the three lower faces the particles have no displacement along the face's normal (planes of symmetry); those of
-/// the upper face of `axis` move along it at a constant velocity, imposed at once; the other two upper faces are free
-/// of traction and need not stay plane. Tangential motion and rotations are free everywhere.
+/// the upper face of `axis` move along it at a constant velocity, imposed at once or over the integrator's ramp; the other
+/// two upper faces are free of traction and need not stay plane. Tangential motion and rotations are free everywhere.
 struct SymmetricTension {
   Axis axis = Axis::x;
   double velocity = 1e-5; ///< m/s, the paper's; negative compresses; a static solver reads it as m

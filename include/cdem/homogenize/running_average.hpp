@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <span>
 
 namespace cdem::homogenize {
 
@@ -81,5 +83,34 @@ private:
   Parameters parameters_;
   State state_;
 };
+
+/// First step from which all values stay within `tolerance` of the reference, relative to it, to the end; none if they do
+/// not, or only during the last `lasting` steps, too short a time to tell.
+///
+/// @param step   [values] increasing
+/// @param value  [values] one that is not a number is not within
+inline std::optional<std::uint64_t> settled_from(std::span<const std::uint64_t> step,
+                                                 std::span<const double> value, double reference,
+                                                 double tolerance, std::uint64_t lasting = 0) {
+  core::expect(step.size() == value.size(), "number of steps", step.size(),
+               "the number of values, " + std::to_string(value.size()) + ", is expected");
+  std::size_t first = value.size();
+  while (first > 0 && std::abs(value[first - 1] - reference) <= tolerance * std::abs(reference))
+    --first;
+  if (first == value.size() || step[first] + lasting > step.back())
+    return std::nullopt;
+  return step[first];
+}
+
+/// Step at which a rule is met by the averages at these steps; none if it is not.
+inline std::optional<std::uint64_t> met_at(ConvergenceRule rule, std::span<const std::uint64_t> step,
+                                           std::span<const double> average) {
+  core::expect(step.size() == average.size(), "number of steps", step.size(),
+               "the number of averages, " + std::to_string(average.size()) + ", is expected");
+  for (std::size_t k = 0; k < step.size(); ++k)
+    if (rule.check(step[k], average[k]))
+      return step[k];
+  return std::nullopt;
+}
 
 } // namespace cdem::homogenize

@@ -4,44 +4,14 @@
 /// What a few packings say of all the others: mean, scatter, prediction interval, the limit of large sizes.
 
 #include <cdem/core/error.hpp>
+#include <cdem/core/student.hpp>
 
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 #include <span>
 
 namespace cdem::homogenize {
-
-/// Probability that |T| of Student's distribution stays below t >= 0.                  Abramowitz and Stegun 26.7.3, 26.7.4
-/// @complexity O(degrees)
-inline double student_within(double t, std::size_t degrees) {
-  const double angle = std::atan(t / std::sqrt(static_cast<double>(degrees)));
-  const double sine = std::sin(angle), cosine = std::cos(angle);
-  const bool odd = degrees % 2 == 1;
-  double term = odd ? cosine : 1, sum = degrees > 1 ? term : 0;
-  for (std::size_t k = odd ? 3 : 2; k + 2 <= degrees; k += 2) {
-    term *= cosine * cosine * static_cast<double>(k - 1) / static_cast<double>(k);
-    sum += term;
-  }
-  return odd ? 2 / std::numbers::pi * (angle + sine * sum) : sine * sum;
-}
-
-/// The t that |T| of Student's distribution stays below with the given probability: 2.145 for 0.95 and 14 degrees.
-/// @throws core::InvalidInput for a probability outside ]0, 1[ or no degree of freedom
-inline double student_quantile(double probability, std::size_t degrees) {
-  core::expect(probability > 0 && probability < 1, "probability", probability,
-               "a number in ]0, 1[ is expected");
-  core::expect(degrees > 0, "degrees of freedom", degrees, "at least 1 is expected");
-  double below = 0, above = 1;
-  while (student_within(above, degrees) < probability)
-    above *= 2;
-  for (int halving = 0; halving < 100; ++halving) {
-    const double middle = 0.5 * (below + above);
-    (student_within(middle, degrees) < probability ? below : above) = middle;
-  }
-  return 0.5 * (below + above);
-}
 
 /// Mean and scatter of a sample.
 struct SampleStatistics {
@@ -58,7 +28,7 @@ struct SampleStatistics {
   double prediction(double probability = 0.95) const {
     if (count < 2)
       return std::numeric_limits<double>::quiet_NaN();
-    return student_quantile(probability, count - 1) * deviation *
+    return core::student_factor(probability, count - 1) * deviation *
            std::sqrt(1 + 1 / static_cast<double>(count));
   }
 };

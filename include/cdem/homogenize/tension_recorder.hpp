@@ -7,6 +7,7 @@
 #include <cdem/homogenize/tension_gauge.hpp>
 #include <cdem/integrate/integrator.hpp>
 
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -19,8 +20,10 @@ struct TensionSample {
   double time = 0;                   ///< s
   double youngs_modulus = 0;         ///< E at this step, Pa
   double youngs_modulus_average = 0; ///< over all steps so far, Pa
+  double youngs_modulus_steady = 0;  ///< average over the steps from `steady_from` on, Pa; NaN before
   double poissons_ratio = 0;
   double poissons_ratio_average = 0;
+  double poissons_ratio_steady = 0;
   double force_fixed = 0;  ///< N
   double force_loaded = 0; ///< N
   double kinetic = 0;      ///< J
@@ -41,16 +44,16 @@ struct TensionModuli {
 
 /// Watches a tension test step by step; an observer for integrate::VelocityVerlet::run().
 ///
-/// Every step: E and nu from the faces, their averages over all steps so far, the paper's convergence rule on both.
-/// Every `sample_every` steps: a point of the curves with its energies and, once `steady_from` steps are done, the
-/// averages of what is proportional to the strain, each divided by the strain of its moment: bond forces, reactions,
+/// Every step that it sees: E and nu from the faces, their averages over all steps so far and over those from
+/// `steady_from` on, the paper's convergence rule on the first. Every `sample_every` steps: a point of the curves with its
+/// energies and, once `steady_from` steps are done, the averages of what is proportional to the strain, each divided by the strain of its moment: bond forces, reactions,
 /// the slopes of the interior. A static solution is a single step to be watched.
 template <integrate::InternalForces Forces>
 class TensionRecorder {
 public:
   struct Parameters {
-    std::uint64_t sample_every = 50;              ///< steps between samples
-    std::uint64_t steady_from = 2500;             ///< steps before the averages of forces and slopes begin
+    std::uint64_t sample_every = 50;  ///< steps between samples
+    std::uint64_t steady_from = 2500; ///< steps before the averages that leave out the first ones begin
     ConvergenceRule::Parameters convergence = {}; ///< for E and for nu
     TensionGauge::Parameters gauge = {};
   };
@@ -73,6 +76,10 @@ public:
     nominal_youngs_modulus_.add(reading.nominal_youngs_modulus());
     poissons_ratio_.add(reading.poissons_ratio());
     const std::uint64_t number = step.motion.step;
+    if (number >= parameters_.steady_from) {
+      youngs_modulus_steady_.add(reading.youngs_modulus());
+      poissons_ratio_steady_.add(reading.poissons_ratio());
+    }
     if (number % parameters_.sample_every == 0)
       sample(step, reading);
     const bool youngs = youngs_rule_.check(number, youngs_modulus_.mean());
@@ -138,6 +145,8 @@ public:
     visit("youngs_modulus", youngs_modulus_);
     visit("nominal_youngs_modulus", nominal_youngs_modulus_);
     visit("poissons_ratio", poissons_ratio_);
+    visit("youngs_modulus_steady", youngs_modulus_steady_);
+    visit("poissons_ratio_steady", poissons_ratio_steady_);
     visit("interior_axial", interior_axial_);
     visit("interior_transverse", interior_transverse_);
     visit("fixed_force", fixed_force_);
@@ -158,10 +167,14 @@ private:
 
   void sample(const integrate::Step& step, const FaceReading& reading) {
     const integrate::EnergyLedger energy = integrate::energy_ledger(problem_, step.motion, pool_);
+    const auto known = [](const RunningAverage& average) {
+      return average.count() > 0 ? average.mean() : std::numeric_limits<double>::quiet_NaN();
+    };
     samples_.push_back({static_cast<double>(step.motion.step), step.motion.time, reading.youngs_modulus(),
-                        youngs_modulus_.mean(), reading.poissons_ratio(), poissons_ratio_.mean(),
-                        reading.force_fixed, reading.force_loaded, energy.kinetic, energy.elastic,
-                        energy.external_work, energy.dissipated});
+                        youngs_modulus_.mean(), known(youngs_modulus_steady_), reading.poissons_ratio(),
+                        poissons_ratio_.mean(), known(poissons_ratio_steady_), reading.force_fixed,
+                        reading.force_loaded, energy.kinetic, energy.elastic, energy.external_work,
+                        energy.dissipated});
     if (step.motion.step >= parameters_.steady_from)
       average_forces(step, reading);
   }
@@ -198,6 +211,7 @@ private:
   Parameters parameters_;
   TensionGauge gauge_;
   RunningAverage youngs_modulus_, nominal_youngs_modulus_, poissons_ratio_;
+  RunningAverage youngs_modulus_steady_, poissons_ratio_steady_;
   RunningAverage interior_axial_, interior_transverse_, fixed_force_, loaded_force_,
       moment_; ///< over the strain
   ConvergenceRule youngs_rule_, poissons_rule_;

@@ -7,6 +7,7 @@
 #include <cdem/integrate/damping.hpp>
 #include <cdem/integrate/detail/verlet_step.hpp>
 #include <cdem/integrate/integrator.hpp>
+#include <cdem/integrate/loading.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -42,8 +43,8 @@ concept EvaluatesBlockwise = requires(const F& forces, const particles::SpatialF
 /// Second order, with damping too, and symplectic without it: alpha is taken at v(n+1), solved for in closed
 /// form; beta at its extrapolation v*, which keeps the step explicit (v(n+1/2) in its place would be of first
 /// order) and shortens the stable step by Damping::step_factor(). A prescribed degree of freedom moves as
-/// u = rate t from the first step on: position and velocity are imposed at once, and the kinetic energy so
-/// given is booked as external work. Undamped on a linear body it conserves E_kin + E_el - dt^2/8 F.M^-1 F
+/// u = rate s(t), s = t unless a ramp is asked for: position and velocity are imposed from the first step on, and the
+/// kinetic energy so given, at once or by the reactions on a ramp, is booked as external work. Undamped on a linear body it conserves E_kin + E_el - dt^2/8 F.M^-1 F
 /// over the free degrees of freedom, to rounding.
 class VelocityVerlet {
 public:
@@ -53,6 +54,7 @@ public:
     /// The observer sees every step whose number is a multiple of this. A step that nobody sees keeps no velocity and
     /// acceleration of its own, which saves a third of what a step moves through memory.
     std::uint64_t observe_every = 1;
+    Loading loading = {}; ///< how the prescribed rates set in
   };
   struct Report {
     std::uint64_t steps = 0; ///< done in this run
@@ -60,10 +62,11 @@ public:
     double seconds = 0; ///< wall clock
   };
 
-  /// @throws core::InvalidInput for a step that is not positive or a damping that is negative
+  /// @throws core::InvalidInput for a step that is not positive, or a damping or ramp that is negative
   explicit VelocityVerlet(Parameters parameters) : parameters_(parameters) {
     core::expect_positive(parameters_.time_step, "time_step", "s");
     parameters_.damping.validate();
+    parameters_.loading.validate();
     core::expect(parameters_.observe_every >= 1, "observe_every", parameters_.observe_every,
                  "1 step or more is expected");
   }
@@ -76,7 +79,7 @@ public:
   ///                  whole step, except after a blow-up, which leaves nothing of use
   /// @param observer  bool(const Step&), called after every step, or every observe_every-th; false ends the run
   /// @throws          core::InvalidInput for a motion that does not fit, is not finite, or goes on under other
-  ///                  constraints than it began with; core::Interrupted;
+  ///                  constraints or another loading than it began with; core::Interrupted;
   ///                  core::NotReached when the run blows up, with the step and the likely cause
   /// @complexity      O(bonds) a step; no field beside those of the motion (one for forces that are not evaluated
   ///                  blockwise, two more with beta)
@@ -138,16 +141,17 @@ private:
   };
 
   template <class P>
-  static void validate(const P& problem, const particles::Motion& motion) {
+  void validate(const P& problem, const particles::Motion& motion) const {
     const std::size_t count = problem.forces.particle_count();
     expect_finite_field(motion.displacement, count, "displacement");
     expect_finite_field(motion.velocity, count, "velocity");
     if (motion.acceleration.empty())
       return;
     expect_finite_field(motion.acceleration, count, "acceleration");
+    const Loading::Amplitude now = parameters_.loading.at(motion.time);
     for (const auto& [particle, dof, rate] : problem.constraints.list()) {
-      const bool kept =
-          motion.velocity[particle][dof] == rate && motion.displacement[particle][dof] == rate * motion.time;
+      const bool kept = motion.velocity[particle][dof] == rate * now.speed &&
+                        motion.displacement[particle][dof] == rate * now.way;
       if (!kept) [[unlikely]]
         core::reject("rate of the constraint on particle " + std::to_string(particle) +
                          ", degree of freedom " + std::to_string(dof),
@@ -162,16 +166,18 @@ private:
   template <class P>
   void begin(const P& problem, particles::Motion& motion, Workspace& work, core::ThreadPool& pool) const {
     motion.acceleration.resize(motion.size());
+    const Loading::Amplitude now = parameters_.loading.at(motion.time);
     for (const auto& constraint : problem.constraints.list())
-      motion.displacement[constraint.particle][constraint.dof] = constraint.rate * motion.time;
+      motion.displacement[constraint.particle][constraint.dof] = constraint.rate * now.way;
     motion.energy = {};
     motion.energy.initial = kinetic_energy(problem.inertia, motion.velocity, pool) +
                             problem.forces.elastic_energy(motion.displacement, pool);
     for (const auto& constraint : problem.constraints.list()) {
       double& velocity = motion.velocity[constraint.particle][constraint.dof];
-      motion.energy.external_work += 0.5 * mass_of(problem.inertia, constraint) *
-                                     (constraint.rate * constraint.rate - velocity * velocity);
-      velocity = constraint.rate;
+      const double imposed = constraint.rate * now.speed;
+      motion.energy.external_work +=
+          0.5 * mass_of(problem.inertia, constraint) * (imposed * imposed - velocity * velocity);
+      velocity = imposed;
     }
     if (parameters_.damping.beta > 0)
       core::parallel_for(pool, motion.size(), [&](std::size_t first, std::size_t last) {
@@ -202,7 +208,8 @@ private:
       blow_up(problem, motion, kinetic);
   }
 
-  /// Where in a step an evaluation of forces stands.
+  /// Where in a step an evaluation of forces stands. The velocity of a prescribed degree of freedom is already that at the
+  /// displacement's time.
   struct Stage {
     double advance; ///< s, by which the velocity is behind the displacement
     /// Leave velocity and acceleration at the displacement's time. Else go on at once: leave the velocity of the coming
@@ -216,7 +223,13 @@ private:
                     const Stage& stage) const {
     if (parameters_.damping.beta > 0)
       problem.forces.evaluate(work.ahead, work.damped, pool);
-    const BlockStep<P> use{problem, motion, work, parameters_, stage};
+    const BlockStep<P> use{problem,
+                           motion,
+                           work,
+                           parameters_,
+                           stage,
+                           parameters_.loading.at(motion.time),
+                           parameters_.loading.at(motion.time + parameters_.time_step)};
     const Sums sums = with_forces(problem, motion.displacement, work.force, pool, use);
     motion.energy.external_power = sums.external_power;
     motion.energy.dissipated_power = sums.dissipated_power;
@@ -231,6 +244,7 @@ private:
     Workspace& work;
     const Parameters& parameters;
     Stage stage;
+    Loading::Amplitude now, coming; ///< at the displacement's time, and a step later
 
     Sums operator()(std::size_t begin, std::size_t end, const particles::Spatial<>* force) const {
       const bool beta = parameters.damping.beta > 0;
@@ -265,19 +279,20 @@ private:
       const double elastic = force[dof];
       const double viscous = parameters.damping.beta > 0 ? work.damped[particle][dof] - elastic : 0;
       const double load = problem.load ? (*problem.load)[particle][dof] : 0;
-      const double velocity = detail::velocity_after(rate, (elastic + viscous + load) * (1 / mass),
-                                                     stage.advance, 1 / (1 + alpha * stage.advance));
-      const double gained = rate * rate - velocity * velocity;
+      const double velocity = rate * now.speed;
+      const double acceleration = rate * now.acceleration + 0.0; // 0, not -0, of a rate below 0
+      const double as_free = detail::velocity_after(velocity, (elastic + viscous + load) * (1 / mass),
+                                                    stage.advance, 1 / (1 + alpha * stage.advance));
+      const double gained = velocity * velocity - as_free * as_free;
       sums.kinetic += 0.5 * mass * gained;
-      sums.dissipated_power += alpha * mass * gained - viscous * (rate - velocity);
-      sums.external_power += load * (rate - velocity);
-      motion.velocity[particle][dof] = rate;
-      const double next = rate * (motion.time + parameters.time_step);
-      motion.acceleration[particle][dof] = stage.whole ? 0 : next;
+      sums.dissipated_power += alpha * mass * gained - viscous * (velocity - as_free);
+      sums.external_power += load * (velocity - as_free);
+      work.reaction[k] = alpha * mass * velocity - elastic - viscous - load + mass * acceleration;
+      sums.external_power += work.reaction[k] * velocity;
+      motion.velocity[particle][dof] = stage.whole ? velocity : rate * coming.speed;
+      motion.acceleration[particle][dof] = stage.whole ? acceleration : rate * coming.way;
       if (!stage.whole && parameters.damping.beta > 0)
-        work.ahead[particle][dof] = next + parameters.damping.beta * rate;
-      work.reaction[k] = alpha * mass * rate - elastic - viscous - load;
-      sums.external_power += work.reaction[k] * rate;
+        work.ahead[particle][dof] = rate * coming.way + parameters.damping.beta * (rate * coming.speed);
     }
   };
 
@@ -311,10 +326,13 @@ private:
             work.ahead[i].component[c] = u + beta * (v + gain);
         }
     });
+    const Loading::Amplitude coming = parameters_.loading.at(motion.time + dt);
     for (const auto& [particle, dof, rate] : problem.constraints.list()) {
-      motion.displacement[particle][dof] = rate * (motion.time + dt);
+      motion.displacement[particle][dof] = rate * coming.way;
+      motion.velocity[particle][dof] = rate * coming.speed;
       if (beta > 0)
-        work.ahead[particle][dof] = motion.displacement[particle][dof] + beta * rate;
+        work.ahead[particle][dof] =
+            motion.displacement[particle][dof] + beta * motion.velocity[particle][dof];
     }
   }
 

@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <limits>
+#include <optional>
+#include <vector>
 
 using namespace cdem;
 
@@ -48,6 +50,44 @@ TEST_CASE("a rule goes on where it was left") {
   homogenize::ConvergenceRule later({.interval = 1, .tolerance = 1e-3, .successive = 2});
   later.restore(rule.state());
   CHECK(later.check(3, 1));
+}
+
+TEST_CASE("settled is what stays near the reference to the end, and long enough to tell") {
+  const std::vector<std::uint64_t> step{10, 20, 30, 40, 50};
+  const auto settled = [&](std::vector<double> value, std::uint64_t lasting = 0) {
+    return homogenize::settled_from(step, value, -2, 0.1, lasting);
+  };
+  CHECK(settled({-2, -2.1, -1.9, -2, -2}) == 10);
+  CHECK(settled({-2, -2.1, -2.3, -2, -2}) == 40); // left it again
+  CHECK(settled({-2, -2.1, -2.3, -2, -2}, 10) == 40);
+  CHECK_FALSE(settled({-2, -2.1, -2.3, -2, -2}, 11));
+  CHECK_FALSE(settled({-2, -2, -2, -2, 2}));
+  CHECK(settled({std::numeric_limits<double>::quiet_NaN(), -1, -2, -2, -2}) == 30);
+  CHECK_FALSE(homogenize::settled_from({}, {}, 1, 1));
+  CHECK_THROWS_WITH_AS(settled({1}), doctest::Contains("number of steps = 5 is not accepted"),
+                       core::InvalidInput);
+}
+
+TEST_CASE("a rule is met by a curve where it is met step by step") {
+  const homogenize::ConvergenceRule rule({.interval = 20, .tolerance = 1e-3, .successive = 2});
+  std::vector<std::uint64_t> step;
+  std::vector<double> average;
+  homogenize::ConvergenceRule alone = rule;
+  std::optional<std::uint64_t> wanted;
+  for (std::uint64_t n = 10; n <= 500; n += 10) {
+    step.push_back(n);
+    average.push_back(1 - 10 / static_cast<double>(n * n));
+    if (alone.check(n, average.back()) && !wanted)
+      wanted = n;
+  }
+  REQUIRE(wanted);
+  CHECK(homogenize::met_at(rule, step, average) == wanted);
+  step.resize(3);
+  average.resize(3);
+  CHECK_FALSE(homogenize::met_at(rule, step, average)); // two checks at most
+  step.pop_back();
+  CHECK_THROWS_WITH_AS(homogenize::met_at(rule, step, average), doctest::Contains("number of steps = 2"),
+                       core::InvalidInput);
 }
 
 TEST_CASE("bad parameters are refused by name") {

@@ -8,17 +8,6 @@
 using namespace cdem;
 using namespace cdem::homogenize;
 
-TEST_CASE("Student's quantiles are those of the tables") {
-  // Abramowitz and Stegun, table 26.10, two-sided 95 % and 99 %.
-  CHECK(student_quantile(0.95, 1) == doctest::Approx(12.706).epsilon(5e-5));
-  CHECK(student_quantile(0.95, 2) == doctest::Approx(4.303).epsilon(1.5e-4));
-  CHECK(student_quantile(0.95, 4) == doctest::Approx(2.776).epsilon(2e-4));
-  CHECK(student_quantile(0.95, 14) == doctest::Approx(2.145).epsilon(2.5e-4));
-  CHECK(student_quantile(0.99, 9) == doctest::Approx(3.250).epsilon(2e-4));
-  CHECK(student_quantile(0.95, 120) == doctest::Approx(1.980).epsilon(3e-4));
-  CHECK(student_quantile(0.95, 100001) == doctest::Approx(1.95996).epsilon(2e-5)); // normal
-}
-
 TEST_CASE("mean, deviation and prediction interval by hand") {
   const std::array values{1.0, 2.0, 3.0, 4.0, std::nan("")};
   const auto sample = sample_statistics(values);
@@ -40,6 +29,4 @@ TEST_CASE("a line through exact points, and its error by hand") {
   const std::array same{1.0, 1.0, 1.0}, none{0.1, 0.0, 0.1};
   CHECK_THROWS_AS(fit_line(same, y, error), core::InvalidInput);
   CHECK_THROWS_AS(fit_line(x, y, none), core::InvalidInput);
-  CHECK_THROWS_AS(student_quantile(1, 3), core::InvalidInput);
-  CHECK_THROWS_AS(student_quantile(0.95, 0), core::InvalidInput);
 }

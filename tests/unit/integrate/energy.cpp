@@ -10,15 +10,16 @@ namespace {
 using namespace sample;
 using integrate::Damping;
 using integrate::EnergyLedger;
+using integrate::Loading;
 using integrate::VelocityVerlet;
 using particles::Motion;
 
 /// The ledger after `time`, and the largest imbalance on the way.
 std::pair<EnergyLedger, double> ledger_after(const Body& body, Motion motion, double time, int steps,
-                                             Damping damping) {
+                                             Damping damping, Loading loading = {}) {
   core::ThreadPool pool;
   double worst = 0;
-  VelocityVerlet({.time_step = time / steps, .damping = damping})
+  VelocityVerlet({.time_step = time / steps, .damping = damping, .loading = loading})
       .run(body.problem(), motion, static_cast<std::uint64_t>(steps), pool, [&](const integrate::Step& step) {
         if (step.motion.step % 10 == 0)
           worst = std::max(worst,
@@ -35,6 +36,7 @@ TEST_CASE("the ledger closes, and its imbalance falls as dt^2") {
   const double limit = stability_limit(body, 1e-6), omega = 2 / limit;
   const double time = 60 * limit;
   Damping damping;
+  Loading loading;
   bool is_shaken = false;
   SUBCASE("free vibration") {
     is_shaken = true;
@@ -49,6 +51,17 @@ TEST_CASE("the ledger closes, and its imbalance falls as dt^2") {
   }
   SUBCASE("prescribed motion, imposed at once, and both dampings") {
     damping = Damping::between(0.05, 0.05 * omega, omega);
+    for (ParticleIndex i = 60; i < 64; ++i) {
+      body.constraints.add({i, 0, 0.5});
+      body.constraints.add({i, 4, 100});
+    }
+  }
+  SUBCASE("prescribed motion on a ramp, both dampings, and loads on it too") {
+    is_shaken = true;
+    damping = Damping::between(0.05, 0.05 * omega, omega);
+    body.load.resize(body.size());
+    body.load[61].linear() = Vec3(1, -2, 0.5);
+    loading = {.ramp = 0.6 * time};
     for (ParticleIndex i = 60; i < 64; ++i) {
       body.constraints.add({i, 0, 0.5});
       body.constraints.add({i, 4, 100});
@@ -72,7 +85,7 @@ TEST_CASE("the ledger closes, and its imbalance falls as dt^2") {
   double imbalance[3];
   int steps = 300;
   for (double& worst : imbalance) {
-    const auto [ledger, largest] = ledger_after(body, start, time, steps, damping);
+    const auto [ledger, largest] = ledger_after(body, start, time, steps, damping, loading);
     worst = largest / (ledger.initial + std::abs(ledger.external_work));
     CHECK(ledger.kinetic > 0);
     CHECK(ledger.elastic > 0);

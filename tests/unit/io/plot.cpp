@@ -13,14 +13,15 @@ namespace {
 
 void write_curve(const std::filesystem::path& path) {
   io::CsvWriter csv(path, {"step", "time_s", "youngs_modulus_pa", "youngs_modulus_average_pa",
-                           "poissons_ratio", "poissons_ratio_average", "reaction_fixed_n",
-                           "reaction_loaded_n", "kinetic_j", "elastic_j", "external_work_j", "dissipated_j"});
+                           "youngs_modulus_steady_pa", "poissons_ratio", "poissons_ratio_average",
+                           "poissons_ratio_steady", "reaction_fixed_n", "reaction_loaded_n", "kinetic_j",
+                           "elastic_j", "external_work_j", "dissipated_j"});
   for (int step = 50; step <= 20'000; step += 50) {
     const double t = step / 20e3;
     const double swing = std::exp(-3 * t) * std::cos(80 * t);
     csv.row(step, 2e-5 * step, 357e9 * (1 + 0.4 * swing), 357e9 * (1 + 0.01 * swing / t),
-            0.23 * (1 - 0.3 * swing), 0.23 * (1 - 0.01 * swing / t), 1, -1, 1e-7, 1e-5 * t * t,
-            1e-7 + 1e-5 * t * t + 1e-6 * t, 1e-6 * t);
+            step < 1000 ? std::nan("") : 357e9, 0.23 * (1 - 0.3 * swing), 0.23 * (1 - 0.01 * swing / t), 0.23,
+            1, -1, 1e-7, 1e-5 * t * t, 1e-7 + 1e-5 * t * t + 1e-6 * t, 1e-6 * t);
   }
   csv.commit();
 }
@@ -93,6 +94,8 @@ int main(int argc, char** argv) {
     std::filesystem::remove(entry.path());
   write_curve(folder / "alumina_convergence.csv");
   write_curve(folder / "silica_convergence.csv");
+  write_curve(folder / "silica_sudden_convergence.csv");
+  write_curve(folder / "silica_ramped_convergence.csv");
   write_angles(folder / "angles.csv");
   write_isotropy(folder / "isotropy.csv");
   write_scatter(folder);
@@ -107,5 +110,10 @@ int main(int argc, char** argv) {
                .value = 54,
                .reference = 80,
                .source = "[L17]"});
+  results.add({.quantity = "silica.youngs_modulus[loading=sudden,average=all]",
+               .value = 350e9,
+               .unit = "Pa",
+               .reference = 357e9,
+               .source = "static solution"});
   results.write_csv(folder / "results.csv");
 }
