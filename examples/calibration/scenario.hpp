@@ -89,7 +89,7 @@ struct Measurement {
   double affine_modulus = 0, affine_poissons = 0;                 ///< Voigt's bound; NaN where not measured
   double distance = 0, anisotropy = 0, smallest = 0, largest = 0; ///< likewise, extremes over E_mu
   double asymmetry = 0;                                           ///< likewise
-  int iterations = 0;
+  std::uint64_t iterations = 0;
   double seconds = 0;
 };
 
@@ -109,7 +109,7 @@ public:
       const auto at = [&](std::size_t c) { return columns[c][r]; };
       rows_.push_back({kept.rows[r][key], at(0), static_cast<std::uint64_t>(at(1)), at(2), at(3), at(4),
                        at(5), at(6), at(7), at(8), at(9), at(10), at(11), at(12), at(13),
-                       static_cast<int>(at(14)), at(15)});
+                       static_cast<std::uint64_t>(at(14)), at(15)});
     }
   }
 
