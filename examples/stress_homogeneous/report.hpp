@@ -90,22 +90,24 @@ inline void add_tessellation(io::Results& table, const std::string& name, const 
   table.add({name + ".stress.cov" + inside, "CoV", one.interior->cov()});
 }
 
-inline void add_curve(io::Results& table, const std::string& name, const std::string& condition,
+inline void add_curve(io::Results& table, const Result& result, const std::string& condition,
                       const Curve& curve, bool compare) {
   if (curve.size() < 2)
     return;
+  const std::string& name = result.material().material.name;
   const PowerLaw law = power_law(curve);
   table.add({name + ".stress.cov_exponent[" + condition + "]", "", law.exponent, "1", -0.5,
              "independent specimens"});
   table.add({name + ".stress.cov_exponent_error[" + condition + "]", "", law.error});
-  const TwoParts parts = two_parts(curve),
-                 printed = two_parts({printed_crossings.begin(), printed_crossings.end()});
-  const auto beside = [&](double value) { return compare ? std::optional(value) : std::nullopt; };
-  const std::string fitted = compare ? "through the two points of [L17] section 2.5" : "";
-  table.add(
-      {name + ".stress.bulk_cov[" + condition + "]", "", parts.bulk, "1", beside(printed.bulk), fitted});
-  table.add({name + ".stress.surface_variance[" + condition + "]", "", parts.surface, "1",
-             beside(printed.surface), fitted});
+  if (compare) {
+    const auto total = static_cast<double>(result.tension.specimen.particles.size());
+    const TwoParts parts = two_parts(curve, total);
+    const TwoParts printed = two_parts({printed_crossings.begin(), printed_crossings.end()}, paper_particles);
+    const char* through = "through the two points of [L17] section 2.5";
+    table.add({name + ".stress.bulk_cov[" + condition + "]", "", parts.bulk, "1", printed.bulk, through});
+    table.add({name + ".stress.fitted_layer[" + condition + "]", "d", parts.layer, "spacing", printed.layer,
+               through});
+  }
   for (const auto& [particles, cov] : printed_crossings) {
     const Crossing found = crossing(curve, cov);
     table.add({name + ".stress.particles_at_cov[cov=" + core::to_text(cov) + "," + condition +
@@ -123,7 +125,7 @@ inline io::Results headline(const Result& result) {
   const std::string& name = result.material().material.name;
   detail::add_body(table, name, result);
   for (const bool interior : {false, true})
-    detail::add_curve(table, name, std::string("cells=hexahedra") + (interior ? ",body=interior" : ""),
+    detail::add_curve(table, result, std::string("cells=hexahedra") + (interior ? ",body=interior" : ""),
                       result.curve(Cells::hexahedra, interior), true);
   return table;
 }
@@ -138,8 +140,8 @@ inline io::Results tabulate(const Result& result) {
   for (const Cells cells : all_cells) {
     const std::string shape = std::string("cells=") + name_of(cells);
     const bool compare = cells == Cells::hexahedra || cells == Cells::hexahedra_by_contact;
-    detail::add_curve(table, name, shape, result.curve(cells, false), compare);
-    detail::add_curve(table, name, shape + ",body=interior", result.curve(cells, true), compare);
+    detail::add_curve(table, result, shape, result.curve(cells, false), compare);
+    detail::add_curve(table, result, shape + ",body=interior", result.curve(cells, true), compare);
   }
   for (const Average& one : result.averages) {
     const std::string at = "[estimator=" + one.estimator + ",particles=" + core::to_text(one.particles) + "]";
@@ -147,7 +149,7 @@ inline io::Results tabulate(const Result& result) {
     table.add({name + ".stress.cov_error" + at, "", one.scatter.moments.coefficient_error()});
   }
   for (const char* estimator : {"halo", "lucy", "gaussian"})
-    detail::add_curve(table, name, std::string("estimator=") + estimator, result.curve(estimator), false);
+    detail::add_curve(table, result, std::string("estimator=") + estimator, result.curve(estimator), false);
   return table;
 }
 

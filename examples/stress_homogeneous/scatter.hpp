@@ -263,25 +263,25 @@ inline PowerLaw power_law(const Curve& curve) {
   return {slope, error, std::exp(y - slope * x)};
 }
 
-/// CoV^2 = bulk^2/n + surface n^(-1/3): independent particles in the bulk, and a layer under the faces of the body that carries less.
-/// The layer has one thickness d, so that it lowers the specimens at the faces, of edge h, by d/h, and they are a part 2 h/L of all
-/// for each pair of faces: CoV^2 = 6 d^2/(h L) where h is far below L, and h goes as n^(1/3).
+/// Independent particles in the bulk, and under each face of a cube of N particles a layer that carries nothing, d mean distances of
+/// particles thick. It lowers the hexahedra at the faces, of edge h, by d/h, and these are a part p = 2 h/L of all for each pair of
+/// faces, so that it adds 3 p (1 - p) (d/h)^2:
+///
+///     CoV^2 = bulk^2/n + 6 d^2 (1 - 2 (n/N)^(1/3)) / (N n)^(1/3)
 struct TwoParts {
-  double bulk = 0;    ///< CoV of a specimen of one particle, as it were
-  double surface = 0; ///< may come out negative where there is no such layer
-
-  double cov(double particles) const {
-    return std::sqrt(bulk * bulk / particles + surface / std::cbrt(particles));
-  }
+  double bulk = 0;  ///< CoV of a specimen of one particle, as it were
+  double layer = 0; ///< d; 0 where the curve falls faster than its bulk alone
 };
 
 /// Least squares in CoV^2, relative to its value at each point; exact through two points.
+/// @param total  N
 /// @throws core::InvalidInput for fewer than two points
-inline TwoParts two_parts(const Curve& curve) {
+inline TwoParts two_parts(const Curve& curve, double total) {
   core::expect(curve.size() >= 2, "number of points", curve.size(), "2 or more is expected");
   double aa = 0, ab = 0, bb = 0, a1 = 0, b1 = 0;
   for (const auto& [particles, cov] : curve) {
-    const double a = 1 / (particles * cov * cov), b = 1 / (std::cbrt(particles) * cov * cov);
+    const double a = 1 / (particles * cov * cov);
+    const double b = 6 * (1 - 2 * std::cbrt(particles / total)) / (std::cbrt(total * particles) * cov * cov);
     aa += a * a;
     ab += a * b;
     bb += b * b;
@@ -289,7 +289,8 @@ inline TwoParts two_parts(const Curve& curve) {
     b1 += b;
   }
   const double determinant = aa * bb - ab * ab;
-  return {std::sqrt(std::max(0.0, (a1 * bb - b1 * ab) / determinant)), (b1 * aa - a1 * ab) / determinant};
+  const auto root = [&](double part) { return std::sqrt(std::max(0.0, part / determinant)); };
+  return {root(a1 * bb - b1 * ab), root(b1 * aa - a1 * ab)};
 }
 
 /// Where a curve falls to a CoV: between two points of it, or beyond its ends by the power law of the whole.

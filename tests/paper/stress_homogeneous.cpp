@@ -105,14 +105,16 @@ TEST_CASE("curves: a power law, where it crosses a level, its two parts") {
   CHECK(outside.particles == doctest::Approx(9));
   CHECK(std::isnan(homogeneous::power_law({{10, 0.2}, {20, 0.1}}).error));
   CHECK_THROWS_AS((void)homogeneous::power_law({{10, 0.2}}), core::InvalidInput);
-  CHECK_THROWS_AS((void)homogeneous::two_parts({{10, 0.2}}), core::InvalidInput);
+  CHECK_THROWS_AS((void)homogeneous::two_parts({{10, 0.2}}, 1e5), core::InvalidInput);
 
-  for (auto& [particles, cov] : curve)
-    cov = std::sqrt(0.36 / particles + 0.01 / std::cbrt(particles));
-  const auto parts = homogeneous::two_parts(curve);
+  // a cube of 10^5 particles, 0.4 mean distances without stress under each face: as in the first test, from counting
+  for (auto& [particles, cov] : curve) {
+    const double edge = std::cbrt(particles), part = 2 * edge / std::cbrt(1e5), lowered = 0.4 / edge;
+    cov = std::sqrt(0.36 / particles + 3 * part * (1 - part) * lowered * lowered);
+  }
+  const auto parts = homogeneous::two_parts(curve, 1e5);
   CHECK(parts.bulk == doctest::Approx(0.6));
-  CHECK(parts.surface == doctest::Approx(0.01));
-  CHECK(parts.cov(100) == doctest::Approx(curve[1].second));
+  CHECK(parts.layer == doctest::Approx(0.4));
 }
 
 TEST_CASE("a sample too small is none, one with a stress below 0 has no logarithms") {
