@@ -75,7 +75,7 @@ def main():
         return
     assert drawn.returncode == 0, drawn.stderr
     expected = ["alumina_convergence.png", "alumina_energy.png", "alumina_specimens_stress.png", "angles.png",
-                "isotropy_anisotropy.png", "isotropy_eps.png", "silica_convergence.png", "silica_energy.png"]
+                "calibration.png", "isotropy_anisotropy.png", "isotropy_eps.png", "silica_convergence.png", "silica_energy.png"]
     assert sorted(pathlib.Path(line).name for line in drawn.stdout.split()) == expected, drawn.stdout
     assert sorted(path.name for path in folder.glob("*.png*")) == expected
     for name in expected:
