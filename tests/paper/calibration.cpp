@@ -108,6 +108,27 @@ TEST_CASE("the paper's tension test on a cut cube is near, and gives a chart too
   CHECK(std::abs(kind.points[1].poissons_ratio - result().kinds[0].points[2].poissons_ratio) < 0.06);
 }
 
+TEST_CASE("a generator's chart in one call is that of the example") {
+  const cal::Params params = small();
+  std::vector<cal::Generator::Parameters> packings;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    packings.push_back(params.packing(params.kinds[0], seed));
+  core::ThreadPool pool;
+  const auto chart = homogenize::measure_chart<cal::Generator>(packings, params.study, {.name = "mine"},
+                                                               examples::Multigrid{}, pool)
+                         .chart;
+  const auto& expected = result().kinds[0].fit.chart;
+  CHECK(chart.name == "mine");
+  CHECK(chart.particles == 500);
+  CHECK(chart.packings == 3);
+  CHECK(chart.modulus.coefficients == expected.modulus.coefficients);
+  CHECK(chart.poissons_ratio.coefficients == expected.poissons_ratio.coefficients);
+  CHECK(chart.modulus_scatter == expected.modulus_scatter);
+  CHECK_THROWS_AS(
+      homogenize::measure_chart<cal::Generator>({}, params.study, {}, examples::Multigrid{}, pool),
+      core::InvalidInput);
+}
+
 TEST_CASE("bad parameters are refused before anything is packed") {
   const auto refuse = [](auto change, const char* what) {
     cal::Params params = small();

@@ -85,13 +85,20 @@ struct CalibrationChart {
     constexpr int steps = 1000;
     for (int step = 0; step <= steps; ++step) {
       const double r = smallest_ratio + (largest_ratio - smallest_ratio) * step / steps;
-      const std::string at = " of the chart at r_mu = " + core::to_text(r);
-      core::expect(modulus(r) > 0, "E_a" + at, relative_modulus(r), "a modulus above 0 is expected");
-      core::expect(relative_modulus_slope(r) > 0, "slope of ln E_a" + at, relative_modulus_slope(r),
-                   "a modulus that rises with r_mu is expected");
-      core::expect(poissons_ratio.slope(r) < 0, "slope of nu" + at, poissons_ratio.slope(r),
-                   "a Poisson's ratio that falls with r_mu is expected: only then it can be inverted");
+      if (!(modulus(r) > 0 && relative_modulus_slope(r) > 0 && poissons_ratio.slope(r) < 0)) [[unlikely]]
+        reject(r);
     }
+  }
+
+private:
+  /// Names what is wrong at r_mu.
+  [[noreturn]] void reject(double r) const {
+    const std::string at = " of the chart at r_mu = " + core::to_text(r);
+    core::expect(modulus(r) > 0, "E_a" + at, relative_modulus(r), "a modulus above 0 is expected");
+    core::expect(relative_modulus_slope(r) > 0, "slope of ln E_a" + at, relative_modulus_slope(r),
+                 "a modulus that rises with r_mu is expected");
+    core::reject("slope of nu" + at, poissons_ratio.slope(r),
+                 "a Poisson's ratio that falls with r_mu is expected: only then it can be inverted");
   }
 };
 

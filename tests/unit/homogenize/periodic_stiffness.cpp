@@ -2,7 +2,6 @@
 #include <cdem/bond/linear_forces.hpp>
 #include <cdem/bond/spring.hpp>
 #include <cdem/homogenize/periodic_stiffness.hpp>
-#include <cdem/integrate/static_multigrid.hpp>
 #include <cdem/packing/lattice.hpp>
 #include <cdem/packing/lubachevsky_stillinger.hpp>
 #include <cdem/simulation/specimen.hpp>
@@ -10,16 +9,16 @@
 #include <Eigen/Eigenvalues>
 #include <doctest/doctest.h>
 
+#include "common/static_solver.hpp"
+
 using namespace cdem;
 using homogenize::Matrix6;
 using homogenize::periodic_stiffness;
 
 namespace {
 
-const integrate::StaticMultigrid& solver() {
-  static const integrate::StaticMultigrid made({.relative_residual = 1e-10});
-  return made;
-}
+constexpr examples::StaticSolver solver{.relative_residual =
+                                         1e-10}; // integrate::StaticMultigrid, compiled elsewhere
 
 const bond::Beam<>& beam() {
   static const bond::Beam<> made({.materials = {{1e9, 0.5}}});
@@ -46,7 +45,7 @@ template <class Law>
 auto measure(const Law& law, const simulation::Specimen& body) {
   core::ThreadPool pool;
   const bond::LinearForces forces(law, body.particles, body.network);
-  return periodic_stiffness(forces, body.box, solver(), pool);
+  return periodic_stiffness(forces, body.box, solver, pool);
 }
 
 packing::LubachevskyStillinger::Parameters small_packing() {
@@ -134,7 +133,7 @@ TEST_CASE("random packing: symmetric, stress as energy, below the affine bound, 
   const auto inertia = particles::solid_spheres(random_body().particles, std::vector<double>{1000.0});
   const particles::Constraints none;
   auto motion = particles::Motion::at_rest(forces.particle_count());
-  solver().solve(integrate::Problem<bond::LinearForces>{forces, inertia, none, &load}, motion, pool);
+  solver.solve(integrate::Problem<bond::LinearForces>{forces, inertia, none, &load}, motion, pool, {});
   CHECK(2 * strain.energy(forces, load, motion.displacement, pool) / random_body().box.volume() ==
         doctest::Approx(e.dot(measured.stiffness.voigt() * e)).epsilon(1e-8));
 }
@@ -167,6 +166,6 @@ TEST_CASE("a packing repeated is as stiff as one copy, and so is a packing shift
 TEST_CASE("a walled box is refused") {
   const bond::LinearForces forces(beam(), random_body().particles, random_body().network);
   core::ThreadPool pool;
-  CHECK_THROWS_AS(periodic_stiffness(forces, random_body().box.without_periodicity(), solver(), pool),
+  CHECK_THROWS_AS(periodic_stiffness(forces, random_body().box.without_periodicity(), solver, pool),
                   core::InvalidInput);
 }

@@ -70,6 +70,25 @@ void write_scatter(const std::filesystem::path& folder) {
   layers.commit();
 }
 
+void write_calibration(const std::filesystem::path& folder) {
+  const std::vector<std::string> columns{"cov", "radius_ratio", "relative_modulus", "poissons_ratio"};
+  io::CsvWriter points(folder / "calibration_points.csv",
+                       {"seed", "cov", "radius_ratio", "relative_modulus", "poissons_ratio"});
+  io::CsvWriter fit(folder / "calibration_fit.csv", columns);
+  for (const double cov : {0.03, 0.3})
+    for (const double r : {0.1, 0.5, 0.9}) {
+      fit.row(cov, r, 0.5 * r * r, 0.4 - 0.3 * r);
+      for (const int seed : {1, 2})
+        points.row(seed, cov, r, 0.5 * r * r + 0.01 * seed, 0.4 - 0.3 * r);
+    }
+  points.commit();
+  fit.commit();
+  io::CsvWriter printed(folder / "calibration_printed.csv",
+                        {"material", "radius_ratio", "relative_modulus", "poissons_ratio"});
+  printed.row("alumina", 0.545, 0.138, 0.24);
+  printed.commit();
+}
+
 void write_specimens(const std::filesystem::path& path) {
   const stress::tessellation::Hexahedra tessellation(geometry::Box::cube(0.01, false), {4, 5, 6});
   stress::StressField field;
@@ -97,6 +116,7 @@ int main(int argc, char** argv) {
   write_curve(folder / "silica_sudden_convergence.csv");
   write_curve(folder / "silica_ramped_convergence.csv");
   write_angles(folder / "angles.csv");
+  write_calibration(folder);
   write_isotropy(folder / "isotropy.csv");
   write_scatter(folder);
   write_specimens(folder / "alumina_specimens.vtu");

@@ -75,8 +75,8 @@ def main():
         return
     assert drawn.returncode == 0, drawn.stderr
     expected = ["alumina_convergence.png", "alumina_energy.png", "alumina_specimens_stress.png", "angles.png",
-                "estimators.png", "isotropy_anisotropy.png", "isotropy_eps.png", "layers.png", "silica_convergence.png",
-                "silica_energy.png", "silica_loadings.png", "variability_cov.png", "variability_extremes.png"]
+                "calibration.png", "estimators.png", "isotropy_anisotropy.png", "isotropy_eps.png", "layers.png",
+                "silica_convergence.png", "silica_energy.png", "silica_loadings.png", "variability_cov.png", "variability_extremes.png"]
     assert sorted(pathlib.Path(line).name for line in drawn.stdout.split()) == expected, drawn.stdout
     assert sorted(path.name for path in folder.glob("*.png*")) == expected
     for name in expected:
