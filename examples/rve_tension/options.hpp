@@ -16,15 +16,7 @@ struct TensionOptions {
   TensionOptions(CLI::App& app, Params& wanted, const char* out) : params(wanted) {
     common.out = out;
     common.add_to(app, 500);
-    app.add_option("--cov", params.packing.cov, "CoV of the Gaussian radii")->capture_default_str();
-    app.add_option("--density", params.packing.density, "Volume fraction of the packing")
-        ->capture_default_str();
-    app.add_option("--growth", params.packing.growth_rate, "Growth rate of the spheres: slower packs denser")
-        ->capture_default_str();
-    add_choice<packing::Boundary>(
-        app, "--boundary", params.packing.boundary,
-        {{"periodic", packing::Boundary::periodic}, {"walls", packing::Boundary::walls}},
-        "Box of the packing: periodic (then cut to a cube) or walls");
+    add_packing_parameters(app, params.packing);
     packings.add_to(app, {"--particles", "--seed", "--cov", "--density", "--growth", "--boundary"});
     app.add_option("--coordination", params.coordination, "Coordination number Z")->capture_default_str();
     add_choice<Axis>(app, "--axis", params.axis, {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}},

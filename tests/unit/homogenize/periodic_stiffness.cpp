@@ -18,7 +18,7 @@ using homogenize::periodic_stiffness;
 namespace {
 
 constexpr examples::StaticSolver solver{.relative_residual =
-                                         1e-10}; // integrate::StaticMultigrid, compiled elsewhere
+                                            1e-10}; // integrate::StaticMultigrid, compiled elsewhere
 
 const bond::Beam<>& beam() {
   static const bond::Beam<> made({.materials = {{1e9, 0.5}}});
