@@ -32,10 +32,10 @@ int main(int argc, char** argv) {
   app.add_option("--coordination", params.coordinations, "Coordination numbers Z, separated by commas")
       ->delimiter(',')
       ->capture_default_str();
-  app.add_option("--shear", params.shear_parts,
-                 "Parts of the beam's shear stiffness K_t, separated by commas")
+  std::vector<std::string> laws;
+  app.add_option("--laws", laws, "Bond laws, separated by commas: beam, timoshenko, two_thirds; default: all")
       ->delimiter(',')
-      ->capture_default_str();
+      ->check(CLI::IsMember(std::vector<std::string>{"beam", "timoshenko", "two_thirds"}));
   if (const int status = examples::parse(app, argc, argv); status >= 0)
     return status;
 
@@ -52,6 +52,11 @@ int main(int argc, char** argv) {
       if (app.count("--pressure") == 0)
         params.jammed_pressure = 1e4;
     }
+    if (!laws.empty())
+      params.laws.clear();
+    for (const study::Law law : study::all_laws)
+      if (std::find(laws.begin(), laws.end(), study::name_of(law)) != laws.end())
+        params.laws.push_back(law);
     params.particles = common.particles;
     params.seed = common.seed;
     params.threads = common.threads;

@@ -10,13 +10,9 @@
 
 namespace cdem::examples::micro_parameters {
 
-inline std::string law_of(const Case& one) {
-  return one.shear_part == 1 ? "beam" : "K_t x " + io::detail::five_digits(one.shear_part);
-}
-
 inline std::string condition_of(const Case& one) {
   return "[" + one.kind.name() + ",z=" + core::to_text(one.coordination) +
-         (one.shear_part == 1 ? "" : ",k_t=" + io::detail::five_digits(one.shear_part)) +
+         (one.law == Law::beam ? "" : std::string(",law=") + name_of(one.law)) +
          ",measure=" + name_of(one.measure) + "]";
 }
 
@@ -34,7 +30,7 @@ inline io::Results tabulate(const Result& result) {
       const std::string source = material.name == "aluminium" ? "[L17] section 3.2" : "[L17] section 2.3";
       table.add({material.name + ".relative_modulus" + condition_of(one), "E_a", one.relative_modulus[m].mean,
                  "1", material.youngs_modulus / material.micro.youngs_modulus, source});
-      if (m == 0 && one.shear_part == 1 && one.measure != Measure::nominal &&
+      if (m == 0 && one.law == Law::beam && one.measure != Measure::nominal &&
           one.measure != Measure::interior)
         table.add({"network.eps" + condition_of(one), "eps", one.eps});
       if (one.poissons_ratio[m].count > 0)
@@ -58,7 +54,7 @@ inline std::string lines(const std::vector<Case>& cases) {
     return std::string(text.data());
   };
   for (const Case& one : cases) {
-    std::vector<std::string> row{one.kind.name(), core::to_text(one.coordination), law_of(one),
+    std::vector<std::string> row{one.kind.name(), core::to_text(one.coordination), name_of(one.law),
                                  name_of(one.measure), io::detail::five_digits(one.eps)};
     for (std::size_t m = 0; m < 3; ++m) {
       const PaperMaterial material = materials()[m];
@@ -94,23 +90,22 @@ inline std::string summary(const Result& result) {
   };
   std::string text = io::detail::aligned(kinds, {false, true, true});
   text += "\nClosest to the paper's six values, with the beam of the paper:\n" +
-          lines(pick(10, [](const Case& one) { return one.shear_part == 1; }));
+          lines(pick(10, [](const Case& one) { return one.law == Law::beam; }));
   text += "\nAt the paper's Z = 6.2 with the beam of the paper:\n" +
-          lines(pick(12, [](const Case& one) { return one.shear_part == 1 && one.coordination == 6.2; }));
-  if (std::any_of(sorted.begin(), sorted.end(), [](const Case& one) { return one.shear_part != 1; }))
-    text += "\nWith a softer shear stiffness:\n" +
-            lines(pick(6, [](const Case& one) { return one.shear_part != 1; }));
+          lines(pick(12, [](const Case& one) { return one.law == Law::beam && one.coordination == 6.2; }));
+  for (const Law law : {Law::timoshenko, Law::two_thirds})
+    if (const auto found = pick(8, [law](const Case& one) { return one.law == law; }); !found.empty())
+      text += std::string("\nClosest with the law ") + name_of(law) + ":\n" + lines(found);
   return text;
 }
 
 /// Writes every case as a row, and results.csv.
 inline void write(const Result& result, const io::OutputDirectory& out) {
   io::CsvWriter table(out.file("coordinations.csv"),
-                      {"cov", "boundary", "state", "density", "reduced_pressure", "coordination",
-                       "shear_part", "measure", "eps", "material", "radius_ratio", "packings",
-                       "relative_modulus", "relative_modulus_deviation", "relative_modulus_printed",
-                       "poissons_ratio", "poissons_ratio_deviation", "poissons_ratio_printed",
-                       "rms_from_paper"});
+                      {"cov", "boundary", "state", "density", "reduced_pressure", "coordination", "law",
+                       "measure", "eps", "material", "radius_ratio", "packings", "relative_modulus",
+                       "relative_modulus_deviation", "relative_modulus_printed", "poissons_ratio",
+                       "poissons_ratio_deviation", "poissons_ratio_printed", "rms_from_paper"});
   for (const Case& one : result.cases) {
     const auto kind = std::find_if(result.kinds.begin(), result.kinds.end(), [&](const KindResult& each) {
       return each.kind.name() == one.kind.name();
@@ -119,7 +114,7 @@ inline void write(const Result& result, const io::OutputDirectory& out) {
       const PaperMaterial material = materials()[m];
       table.row(one.kind.cov, one.kind.boundary == packing::Boundary::periodic ? "periodic" : "walls",
                 one.kind.jammed ? "jammed" : "at_density", kind->density.mean, kind->pressure.mean,
-                one.coordination, one.shear_part, name_of(one.measure), one.eps, material.name,
+                one.coordination, name_of(one.law), name_of(one.measure), one.eps, material.name,
                 material.micro.radius_ratio, one.relative_modulus[m].count, one.relative_modulus[m].mean,
                 one.relative_modulus[m].deviation, material.youngs_modulus / material.micro.youngs_modulus,
                 one.poissons_ratio[m].mean, one.poissons_ratio[m].deviation, material.poissons_ratio,

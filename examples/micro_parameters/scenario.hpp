@@ -3,6 +3,7 @@
 // What the paper's printed micro parameters give on packings of many kinds: which kind was the paper's?
 
 #include <cdem/bond/beam.hpp>
+#include <cdem/bond/timoshenko_beam.hpp>
 #include <cdem/homogenize/sample_statistics.hpp>
 #include <cdem/packing/lubachevsky_stillinger.hpp>
 #include <cdem/simulation/specimen.hpp>
@@ -22,20 +23,39 @@
 
 namespace cdem::examples::micro_parameters {
 
-/// A beam whose shear stiffness K_t is a part of 12 E_mu I / L^3; bending and torsion are the beam's. Not a model of this
-/// library, which is Euler-Bernoulli's: a lead that the study follows.
-struct SofterShear {
+/// How the bonds resist; stretch, torsion and bending are the beam's in all of them.
+enum class Law : std::uint8_t {
+  beam,       ///< the paper's: Euler-Bernoulli, K_t = 12 E_mu I / L^3
+  timoshenko, ///< bond::TimoshenkoBeam: K_t less by 1 + Phi, the beam's own shear
+  two_thirds, ///< K_t two thirds of the beam's whatever its radius: a lead of the study, not a model
+};
+inline constexpr std::array all_laws{Law::beam, Law::timoshenko, Law::two_thirds};
+
+inline const char* name_of(Law law) {
+  constexpr std::array names{"beam", "timoshenko", "two_thirds"};
+  return names[static_cast<std::size_t>(law)];
+}
+
+/// A bond law chosen at run time.
+struct StudiedLaw {
+  Law law;
   bond::Beam<> beam;
-  double part = 1;
+  bond::TimoshenkoBeam<> timoshenko;
+
+  StudiedLaw(Law chosen, const bond::Material& material)
+      : law(chosen), beam({.materials = {material}}), timoshenko({.materials = {material}}) {}
 
   bond::ChannelStiffness stiffness(const bond::BondGeometry& bond) const {
+    if (law == Law::timoshenko)
+      return timoshenko.stiffness(bond);
     bond::ChannelStiffness k = beam.stiffness(bond);
-    k.tangential *= part;
+    if (law == Law::two_thirds)
+      k.tangential *= 2.0 / 3;
     return k;
   }
   void validate(const particles::ParticleSet& particles) const { beam.validate(particles); }
 };
-static_assert(bond::BondLaw<SofterShear>);
+static_assert(bond::BondLaw<StudiedLaw>);
 
 /// A kind of packing.
 struct Kind {
@@ -53,7 +73,7 @@ struct Kind {
 struct Params {
   std::vector<double> covs = {0, 0.03, 0.1, 0.3};
   std::vector<double> coordinations = {5.5, 6, 6.2, 6.5, 7, 8}; ///< Z
-  std::vector<double> shear_parts = {1, 2.0 / 3};               ///< of K_t
+  std::vector<Law> laws{all_laws.begin(), all_laws.end()};
   std::uint32_t particles = 10000;
   int packings = 3; ///< of each kind
   std::uint64_t seed = 1;
@@ -87,9 +107,7 @@ struct Params {
                  "1 or more is expected");
     for (const double z : coordinations)
       core::expect_positive(z, "coordination");
-    for (const double part : shear_parts)
-      core::expect(part > 0 && part <= 1, "part of the shear stiffness", part,
-                   "a number in ]0, 1] is expected");
+    core::expect(!laws.empty(), "number of laws", laws.size(), "1 or more is expected");
     core::expect(packings >= 1, "packings", packings, "1 or more is expected");
     for (const Kind& kind : kinds())
       packing::LubachevskyStillinger{packing_of(kind, 0)};
@@ -105,7 +123,7 @@ inline std::array<PaperMaterial, 3> materials() {
 struct Case {
   Kind kind;
   double coordination = 0;
-  double shear_part = 1;
+  Law law = Law::beam;
   Measure measure = Measure::faces;
   std::array<homogenize::SampleStatistics, 3> relative_modulus; ///< E_a = E_M / E_mu
   std::array<homogenize::SampleStatistics, 3> poissons_ratio;   ///< nu_M
@@ -132,7 +150,7 @@ struct KindResult {
 
 struct Result {
   std::vector<KindResult> kinds;
-  std::vector<Case> cases; ///< by kind, Z, part of the shear stiffness, measure
+  std::vector<Case> cases; ///< by kind, Z, law, measure
 
   /// The cases from the closest to the paper's six values on; those without nu are left out.
   std::vector<Case> closest() const {
@@ -161,15 +179,15 @@ inline void judge(const packing::LubachevskyStillinger::Report& report) {
 
 /// Everything about one packing at one Z with one law: what each measure gives for the three materials.
 inline std::array<MeasuredModuli, 3> measure(const simulation::Specimen& body,
-                                             const simulation::Specimen* cell, double shear_part,
+                                             const simulation::Specimen* cell, Law law,
                                              core::ThreadPool& pool, const core::Monitor& monitor) {
   std::array<MeasuredModuli, 3> moduli;
   const StaticSolver solver;
   for (std::size_t m = 0; m < 3; ++m) {
-    const SofterShear law{bond::Beam<>({.materials = {materials()[m].micro}}), shear_part};
-    measure_tension(moduli[m], law, body, Axis::x, solver, pool, monitor);
+    const StudiedLaw bonds(law, materials()[m].micro);
+    measure_tension(moduli[m], bonds, body, Axis::x, solver, pool, monitor);
     if (cell)
-      measure_periodic(moduli[m], law, *cell, solver, pool, monitor);
+      measure_periodic(moduli[m], bonds, *cell, solver, pool, monitor);
   }
   return moduli;
 }
@@ -197,12 +215,13 @@ inline Result run(const Params& params, const core::Monitor& monitor = {}) {
     make_packings_ahead<packing::LubachevskyStillinger>(wanted, params.source, detail::judge, shown, pool);
 
     struct Key {
-      double coordination, shear_part;
+      double coordination;
+      Law law;
     };
     std::vector<Key> keys;
     for (const double z : params.coordinations)
-      for (const double part : params.shear_parts)
-        keys.push_back({z, part});
+      for (const Law law : params.laws)
+        keys.push_back({z, law});
     std::vector<double> density, pressure;
     bool all_jammed = true; // below the density asked for
     std::vector<std::vector<std::array<MeasuredModuli, 3>>> moduli(keys.size()); // [keys][packings]
@@ -230,7 +249,7 @@ inline Result run(const Params& params, const core::Monitor& monitor = {}) {
           cell =
               simulation::make_periodic_specimen(packing.particles, packing.box, keys[c].coordination, pool);
         eps_cell[c].push_back(cell ? cell->eps : 0);
-        moduli[c].push_back(detail::measure(body, cell ? &*cell : nullptr, keys[c].shear_part, pool, {}));
+        moduli[c].push_back(detail::measure(body, cell ? &*cell : nullptr, keys[c].law, pool, {}));
       }
     }
     if (all_jammed && !kind.jammed) { // growing on gives the same packings once more
@@ -245,7 +264,7 @@ inline Result run(const Params& params, const core::Monitor& monitor = {}) {
           continue;
         Case one{kind,
                  keys[c].coordination,
-                 keys[c].shear_part,
+                 keys[c].law,
                  measure,
                  {},
                  {},
