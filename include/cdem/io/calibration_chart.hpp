@@ -56,7 +56,8 @@ public:
     const std::size_t end = text_.find('\n', at_);
     if (end == text_.npos)
       fail("it ends in the middle of a line");
-    return text_.substr(std::exchange(at_, end + 1), end - at_);
+    const std::size_t begin = std::exchange(at_, end + 1);
+    return text_.substr(begin, end - begin);
   }
   /// The value of the line `name = value` that must come next.
   std::string value(std::string_view name) {
