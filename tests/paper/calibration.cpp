@@ -115,7 +115,7 @@ TEST_CASE("a generator's chart in one call is that of the example") {
     packings.push_back(params.packing(params.kinds[0], seed));
   core::ThreadPool pool;
   const auto chart = homogenize::measure_chart<cal::Generator>(packings, params.study, {.name = "mine"},
-                                                               examples::Multigrid{}, pool)
+                                                               examples::StaticSolver{}, pool)
                          .chart;
   const auto& expected = result().kinds[0].fit.chart;
   CHECK(chart.name == "mine");
@@ -125,7 +125,7 @@ TEST_CASE("a generator's chart in one call is that of the example") {
   CHECK(chart.poissons_ratio.coefficients == expected.poissons_ratio.coefficients);
   CHECK(chart.modulus_scatter == expected.modulus_scatter);
   CHECK_THROWS_AS(
-      homogenize::measure_chart<cal::Generator>({}, params.study, {}, examples::Multigrid{}, pool),
+      homogenize::measure_chart<cal::Generator>({}, params.study, {}, examples::StaticSolver{}, pool),
       core::InvalidInput);
 }
 
