@@ -140,6 +140,34 @@ inline void judge(const packing::LubachevskyStillinger::Report& report) {
     report.require_reached();
 }
 
+/// What packing a particle costs; measuring it by two tension tests is the unit, by both tests 7.
+inline constexpr double packing_cost = 8;
+
+/// How far a run is; what is shown never goes back.
+class Account {
+public:
+  explicit Account(const core::Monitor& monitor) : monitor_(monitor) {}
+
+  double total = 0; ///< of all that is to be done
+  double done = 0;
+
+  void report(const std::string& stage, const std::string& detail) {
+    shown_ = std::max(shown_, total > 0 ? std::min(1.0, done / total) : 0);
+    monitor_.report({stage, shown_, detail});
+  }
+  /// For a part that costs so much, as it goes from 0 to 1.
+  core::Monitor part(const std::string& stage, double cost) {
+    return core::Monitor([this, stage, cost](const core::Progress& progress) {
+      shown_ = std::max(shown_, total > 0 ? std::min(1.0, (done + cost * progress.fraction) / total) : 0);
+      monitor_.report({stage, shown_, progress.detail});
+    });
+  }
+
+private:
+  const core::Monitor& monitor_;
+  double shown_ = 0;
+};
+
 /// The samples of one packing, one a material.
 inline std::vector<Sample> measure(const Params& params,
                                    const ObtainedPacking<packing::LubachevskyStillinger>& made,
@@ -149,6 +177,14 @@ inline std::vector<Sample> measure(const Params& params,
   const simulation::Specimen body =
       simulation::make_specimen(packing.particles, packing.box, params.coordination, pool);
   const StaticSolver solver;
+  const double solutions = periodic ? 14 : 2;
+  double solved = 0;
+  const auto shown = [&](double count) { // as many solutions, told by the first of them
+    const double before = std::exchange(solved, solved + count);
+    return core::Monitor([&, before, count](const core::Progress& progress) {
+      monitor.report({progress.stage, (before + count * progress.fraction) / solutions, progress.detail});
+    });
+  };
   std::vector<Sample> samples;
   for (const PaperMaterial& material : {alumina(), silica()}) {
     const bond::Beam<> law({.materials = {material.micro}});
@@ -161,13 +197,13 @@ inline std::vector<Sample> measure(const Params& params,
       sample.pressure = packing.report.pressure;
     sample.eps = body.eps;
     const auto start = std::chrono::steady_clock::now();
-    measure_tension(sample.moduli, law, body, params.axis, solver, pool, monitor);
+    measure_tension(sample.moduli, law, body, params.axis, solver, pool, shown(1));
     sample.solve_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (periodic) {
       const simulation::Specimen cell =
           simulation::make_periodic_specimen(packing.particles, packing.box, params.coordination, pool);
       sample.anisotropy =
-          measure_periodic(sample.moduli, law, cell, solver, pool, monitor).universal_anisotropy();
+          measure_periodic(sample.moduli, law, cell, solver, pool, shown(6)).universal_anisotropy();
       sample.eps_periodic = cell.eps;
     }
     samples.push_back(std::move(sample));
@@ -195,38 +231,49 @@ inline Result run(const Params& params, Ledger ledger = {}, const core::Monitor&
            (number < params.packings_periodic && !found->moduli.has(Measure::periodic));
   };
   const bool given = !params.source.file.empty();
-  double total = 0, done = 0; // in particles, to which the time is nearly proportional
+  detail::Account account(monitor);
+  const auto must_pack = [&](const auto& packing) {
+    std::error_code ignored;
+    return !given && (params.source.cache.empty() ||
+                      !std::filesystem::exists(
+                          cached_packing<packing::LubachevskyStillinger>(packing, params.source), ignored));
+  };
+  const auto cost_of_packing = [&](const auto& packing) {
+    return must_pack(packing) ? detail::packing_cost * packing.particles : 0;
+  };
+  const auto cost_of_measuring = [&](std::uint32_t size, int number) {
+    return static_cast<double>(size) * (number < params.packings_periodic ? 7 : 1);
+  };
   for (const std::uint32_t size : params.sizes)
     for (int number = 0; number < params.count(size); ++number)
-      total += lacks(size, number) ? size : 0;
+      if (lacks(size, number))
+        account.total += cost_of_packing(params.packing_of(size, number)) + cost_of_measuring(size, number);
 
   for (const std::uint32_t size : params.sizes) {
+    const std::string stage = std::to_string(size) + " particles";
     for (int first = 0; first < params.count(size); first += pool.size()) {
       std::vector<packing::LubachevskyStillinger::Parameters> batch;
       std::vector<int> numbers;
+      double packing = 0;
       for (int number = first; number < std::min(first + pool.size(), params.count(size)); ++number)
         if (lacks(size, number)) {
           batch.push_back(params.packing_of(size, number));
           numbers.push_back(number);
+          packing += cost_of_packing(batch.back());
         }
-      // of the time of a batch, packing takes about four fifths
-      const double share = static_cast<double>(size) / total;
-      const auto shown = [&](double offset, double weight) {
-        return core::Monitor([&, offset, weight](const core::Progress& progress) {
-          monitor.report({std::to_string(size) + " particles",
-                          done / total + offset + weight * progress.fraction, progress.detail});
-        });
-      };
-      make_packings_ahead<packing::LubachevskyStillinger>(
-          batch, params.source, detail::judge, shown(0, 0.8 * share * static_cast<double>(batch.size())),
-          pool);
+      make_packings_ahead<packing::LubachevskyStillinger>(batch, params.source, detail::judge,
+                                                          account.part(stage, packing), pool);
       for (std::size_t k = 0; k < batch.size(); ++k) {
-        const double offset = 0.8 * share * static_cast<double>(batch.size() - k);
         const auto made = obtain_packing<packing::LubachevskyStillinger>(
-            batch[k], params.source, detail::judge, shown(offset, 0), &pool);
-        const auto samples = detail::measure(
-            params, made, batch[k].seed,
-            made.packing.box.periodic[0] && numbers[k] < params.packings_periodic, pool, shown(offset, 0));
+            batch[k], params.source, detail::judge, account.part(stage, packing), &pool);
+        if (k + 1 == batch.size())
+          account.done += packing;
+        const double cost = cost_of_measuring(size, numbers[k]);
+        const auto samples =
+            detail::measure(params, made, batch[k].seed,
+                            made.packing.box.periodic[0] && numbers[k] < params.packings_periodic, pool,
+                            account.part(stage, cost));
+        account.done += cost;
         std::erase_if(result.samples, [&](const Sample& sample) {
           return !given && sample.particles == size && sample.seed == batch[k].seed;
         });
@@ -236,11 +283,9 @@ inline Result run(const Params& params, Ledger ledger = {}, const core::Monitor&
         });
         if (ledger.keep)
           ledger.keep(result.samples);
-        done += size;
-        monitor.report({std::to_string(size) + " particles", std::min(1.0, done / total),
-                        "seed " + std::to_string(batch[k].seed) + ", E " +
-                            core::to_text(1e-9 * samples.front().moduli[Measure::faces].youngs_modulus) +
-                            " GPa"});
+        account.report(
+            stage, "seed " + std::to_string(batch[k].seed) + ", E " +
+                       core::to_text(1e-9 * samples.front().moduli[Measure::faces].youngs_modulus) + " GPa");
       }
     }
   }
