@@ -187,7 +187,7 @@ inline std::array<MeasuredModuli, 3> measure(const simulation::Specimen& body,
     const StudiedLaw bonds(law, materials()[m].micro);
     measure_tension(moduli[m], bonds, body, Axis::x, solver, pool, monitor);
     if (cell)
-      measure_periodic(moduli[m], bonds, *cell, solver, pool, monitor);
+      measure_periodic(moduli[m], bonds, *cell, pool, monitor);
   }
   return moduli;
 }

@@ -202,8 +202,7 @@ inline std::vector<Sample> measure(const Params& params,
     if (periodic) {
       const simulation::Specimen cell =
           simulation::make_periodic_specimen(packing.particles, packing.box, params.coordination, pool);
-      sample.anisotropy =
-          measure_periodic(sample.moduli, law, cell, solver, pool, shown(6)).universal_anisotropy();
+      sample.anisotropy = measure_periodic(sample.moduli, law, cell, pool, shown(6)).universal_anisotropy();
       sample.eps_periodic = cell.eps;
     }
     samples.push_back(std::move(sample));
