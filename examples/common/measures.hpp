@@ -55,8 +55,7 @@ void measure_tension(MeasuredModuli& moduli, const Law& law, const simulation::S
 }
 
 /// Measures a periodic body under six mean strains, each solved to a relative residual of 1e-6: the stiffness is symmetric
-/// to less. (Near a million particles
-/// rounding keeps a body that is free to translate above 1e-8.)
+/// to less.
 template <bond::BondLaw Law>
 homogenize::Stiffness measure_periodic(MeasuredModuli& moduli, const Law& law,
                                        const simulation::Specimen& cell, core::ThreadPool& pool,

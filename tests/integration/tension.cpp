@@ -298,6 +298,31 @@ TEST_CASE("density scaling gives the step asked for and leaves statics alone") {
                        doctest::Contains("at least one bond"), core::InvalidInput);
 }
 
+TEST_CASE(
+    "a particle that hangs on nothing changes neither the others' masses nor the frequency of the body") {
+  const auto vibration = [](bodies::Body specimen) {
+    Test test(std::move(specimen), Axis::x, 1e-5, 3e-4);
+    const double mass = test.inertia.mass.back();
+    const auto report = integrate::scale_density(test.forces, test.inertia, 2e-5, 0.5,
+                                                 integrate::DensityScaling::per_particle, test.pool);
+    const double omega = integrate::first_axial_frequency(test.problem(), test.specimen.particles, 0, 6e-3,
+                                                          Axis::x, test.pool);
+    return std::tuple{report, omega, test.inertia.mass.back() / mass};
+  };
+  const bodies::Body specimen = bodies::shaken_cube(6, 1e-3, 6.2, 7);
+  auto with_another = specimen;
+  with_another.particles.resize(specimen.particles.size() + 1);
+  with_another.particles.position.back() = {3e-3, 3e-3,
+                                            3e-3}; // amidst the others, where the shape moves most
+  with_another.particles.radius.back() = 1e-3;
+  with_another.network.particle_count += 1;
+  const auto [expected, omega, unused] = vibration(specimen);
+  const auto [report, same_omega, factor] = vibration(with_another);
+  CHECK(same_omega == doctest::Approx(omega).epsilon(1e-12));
+  CHECK(report.mass_factor == doctest::Approx(expected.mass_factor).epsilon(1e-12));
+  CHECK(factor == doctest::Approx(report.mass_factor).epsilon(1e-12));
+}
+
 TEST_CASE("Rayleigh's quotient of a row's own sine is its exact frequency") {
   // a row of n equal springs held at both ends: omega_1 = 2 sqrt(k/m) sin(pi/2n)
   constexpr std::size_t n = 12;

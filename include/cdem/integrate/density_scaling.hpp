@@ -23,9 +23,9 @@ enum class DensityScaling : std::uint8_t {
 
 /// What density scaling did.
 struct DensityScalingReport {
-  double smallest_factor = 1; ///< on the density of a particle
+  double smallest_factor = 1; ///< on the density of a particle that has bonds
   double largest_factor = 1;
-  double mass_factor = 1; ///< on the mass of the body
+  double mass_factor = 1; ///< on the mass of all particles that have bonds, and on that of each that has none
 };
 
 /// Scales the density so that `safety` times the critical time step is `time_step`.
@@ -34,6 +34,7 @@ struct DensityScalingReport {
 ///
 /// The paper's printed steps (2.15e-5 s for alumina) need densities many orders above the real ones: it scales the
 /// mass without saying so, [L17] section 2.3.
+/// A particle without a bond sets no step. It gets the body's mean factor, so that it weighs among the others as before.
 /// @param time_step  dt wanted, s
 /// @param safety     D_t in ]0, 1[, [L17] section 2.3: 0.5
 /// @throws           core::InvalidInput for a step or safety that is not accepted, or a body without a bond
@@ -61,19 +62,25 @@ DensityScalingReport scale_density(const Forces& forces, particles::Inertia& ine
       2 * (safety / time_step) * (safety / time_step); // eigenvalue of a particle with step dt / D_t
 
   DensityScalingReport report{std::numeric_limits<double>::infinity(), 0, 0};
-  double mass_before = 0, mass_after = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    // a particle without a bond sets no step: it keeps the factor that a uniform scaling would give
-    const bool own = scaling == DensityScaling::per_particle && eigenvalue[i] > 0;
-    const double factor = (own ? eigenvalue[i] : largest) / target;
-    mass_before += inertia.mass[i];
+  const auto scale = [&](std::size_t i, double factor) {
     inertia.mass[i] *= factor;
     inertia.moment[i] *= factor;
+  };
+  double mass_before = 0, mass_after = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (eigenvalue[i] == 0)
+      continue;
+    const double factor = (scaling == DensityScaling::per_particle ? eigenvalue[i] : largest) / target;
+    mass_before += inertia.mass[i];
+    scale(i, factor);
     mass_after += inertia.mass[i];
     report.smallest_factor = std::min(report.smallest_factor, factor);
     report.largest_factor = std::max(report.largest_factor, factor);
   }
   report.mass_factor = mass_after / mass_before;
+  for (std::size_t i = 0; i < count; ++i)
+    if (eigenvalue[i] == 0)
+      scale(i, report.mass_factor);
   return report;
 }
 

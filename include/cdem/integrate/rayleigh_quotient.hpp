@@ -31,14 +31,20 @@ double frequency_of_shape(const Problem<Forces>& problem, const particles::Spati
 /// sin(pi s), s from 0 to 1 over the box.
 ///
 /// The particles follow the shape exactly, as in Voigt's bound, so it is above the true one by some tens of percent.
+/// Particles without a bond stay at rest: they do not vibrate with the body.
 /// @return  rad/s
+/// @throws  core::InvalidInput where nothing between the ends moves
+/// @complexity O(bonds)
 template <InternalForces Forces>
 double first_axial_frequency(const Problem<Forces>& problem, const particles::ParticleSet& particles,
                              double lower, double upper, Axis axis, core::ThreadPool& pool) {
   particles::SpatialField<> shape(particles.size());
   const int k = core::index_of(axis);
-  for (std::size_t i = 0; i < shape.size(); ++i)
-    shape[i][k] = std::sin(std::numbers::pi * (particles.position[i][k] - lower) / (upper - lower));
+  core::parallel_for(pool, shape.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (problem.forces.diagonal_block(static_cast<ParticleIndex>(i)).cwiseAbs().maxCoeff() > 0)
+        shape[i][k] = std::sin(std::numbers::pi * (particles.position[i][k] - lower) / (upper - lower));
+  });
   return frequency_of_shape(problem, shape, pool);
 }
 

@@ -26,7 +26,7 @@ struct Units {
 
 /// Which degrees of freedom of a particle are held: bit d for degree of freedom d.
 using HeldMask = std::uint8_t;
-inline constexpr HeldMask all_held = 0x3F;
+inline constexpr HeldMask all_held = 0x3F, all_translations_held = 0x07;
 
 /// Stiffness of a bond at its middle: against slip and against turn, which it does not couple.
 struct BondStiffness {

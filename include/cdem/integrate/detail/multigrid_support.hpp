@@ -207,6 +207,8 @@ Support find_support(const Problem<Forces>& problem, const Bonds<Forces>& bonds,
     if (parts.size[part] > 1)
       ++support.loose_clusters;
     left_alone[part] = parts.size[part] == 1;
+    if (!is_body && !constrained[part]) // its loads are balanced: held at one particle it needs no reaction
+      support.held[parts.first[part]] = parts.periodic[part] ? all_translations_held : all_held;
   }
   const Eigen::MatrixXd body_motions = free_motions(parts.held[body]);
   const bool drifts = parts.periodic[body] && body_motions.cols() > 0 && !constrained[body];
