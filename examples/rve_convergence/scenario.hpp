@@ -129,7 +129,7 @@ inline Result run(const Params& params, const core::Monitor& monitor = {}) {
   rve::Params statics = params, sudden = params, ramped = params;
   statics.method = rve::Method::statics;
   sudden.ramp = 0;
-  sudden.steady_after = 0.5; // the wave has crossed the body once
+  sudden.steady_after = 1; // the wave has crossed the body and come back
   ramped.steady_after = params.ramp;
   ramped.most_steps = params.ramped_steps;
   for (const rve::Material& material : rve::paper_materials()) {

@@ -300,7 +300,7 @@ TEST_CASE("density scaling gives the step asked for and leaves statics alone") {
 
 TEST_CASE(
     "a particle that hangs on nothing changes neither the others' masses nor the frequency of the body") {
-  const auto vibration = [](bodies::Body specimen) {
+  const auto vibration = [](simulation::Specimen specimen) {
     Test test(std::move(specimen), Axis::x, 1e-5, 3e-4);
     const double mass = test.inertia.mass.back();
     const auto report = integrate::scale_density(test.forces, test.inertia, 2e-5, 0.5,
@@ -309,7 +309,7 @@ TEST_CASE(
                                                           Axis::x, test.pool);
     return std::tuple{report, omega, test.inertia.mass.back() / mass};
   };
-  const bodies::Body specimen = bodies::shaken_cube(6, 1e-3, 6.2, 7);
+  const simulation::Specimen specimen = bodies::shaken_cube(6, 1e-3, 6.2, 7);
   auto with_another = specimen;
   with_another.particles.resize(specimen.particles.size() + 1);
   with_another.particles.position.back() = {3e-3, 3e-3,
