@@ -192,6 +192,66 @@ inline std::array<MeasuredModuli, 3> measure(const simulation::Specimen& body,
   return moduli;
 }
 
+/// What the packings of one kind gave.
+struct Samples {
+  /// At one Z with one law, a value a packing.
+  struct Condition {
+    double coordination;
+    Law law;
+    std::vector<double> eps = {}, eps_periodic = {}; ///< of the walled or cut body, of the periodic one
+    std::vector<std::array<MeasuredModuli, 3>> moduli = {};
+  };
+  std::vector<Condition> conditions;
+  std::vector<double> density, pressure;
+  bool all_jammed = true; ///< below the density asked for
+
+  explicit Samples(const Params& params) {
+    for (const double z : params.coordinations)
+      for (const Law law : params.laws)
+        conditions.push_back({z, law});
+  }
+
+  /// Bonds and measures one packing under every condition. @param tell  called with the share done and the condition
+  template <class Obtained, class Tell>
+  void add(const Obtained& obtained, core::ThreadPool& pool, Tell&& tell) {
+    const auto& packing = obtained.packing;
+    density.push_back(packing.particles.solid_volume() / packing.box.volume());
+    pressure.push_back(obtained.reported ? packing.report.pressure
+                                         : std::numeric_limits<double>::quiet_NaN());
+    all_jammed &= obtained.reported && packing.report.reason == packing::StopReason::pressure_limit;
+    for (std::size_t c = 0; c < conditions.size(); ++c) {
+      Condition& condition = conditions[c];
+      tell(static_cast<double>(c) / static_cast<double>(conditions.size()), condition);
+      const auto body =
+          simulation::make_specimen(packing.particles, packing.box, condition.coordination, pool);
+      condition.eps.push_back(body.eps);
+      std::optional<simulation::Specimen> cell;
+      if (packing.box.periodic[0])
+        cell =
+            simulation::make_periodic_specimen(packing.particles, packing.box, condition.coordination, pool);
+      condition.eps_periodic.push_back(cell ? cell->eps : 0);
+      condition.moduli.push_back(measure(body, cell ? &*cell : nullptr, condition.law, pool, {}));
+    }
+  }
+};
+
+/// The statistics of one condition by one measure.
+inline Case case_of(const Kind& kind, const Samples::Condition& condition, Measure measure) {
+  const auto& eps = measure == Measure::periodic ? condition.eps_periodic : condition.eps;
+  Case one{
+      kind, condition.coordination, condition.law, measure, {}, {}, homogenize::sample_statistics(eps).mean};
+  for (std::size_t m = 0; m < 3; ++m) {
+    std::vector<double> relative_modulus, poissons_ratio;
+    for (const auto& of_packing : condition.moduli) {
+      relative_modulus.push_back(of_packing[m][measure].youngs_modulus / materials()[m].micro.youngs_modulus);
+      poissons_ratio.push_back(of_packing[m][measure].poissons_ratio);
+    }
+    one.relative_modulus[m] = homogenize::sample_statistics(relative_modulus);
+    one.poissons_ratio[m] = homogenize::sample_statistics(poissons_ratio);
+  }
+  return one;
+}
+
 } // namespace detail
 
 /// Packs, bonds and measures every combination.
@@ -204,82 +264,39 @@ inline Result run(const Params& params, const core::Monitor& monitor = {}) {
   Result result;
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     Kind kind = kinds[k];
-    const double share = 1 / static_cast<double>(kinds.size());
-    const core::Monitor shown([&](const core::Progress& progress) {
+    const auto report = [&](double fraction, const std::string& detail) {
       monitor.report(
-          {kind.name(), share * (static_cast<double>(k) + 0.5 * progress.fraction), progress.detail});
-    });
+          {kind.name(), (static_cast<double>(k) + fraction) / static_cast<double>(kinds.size()), detail});
+    };
+    const core::Monitor packs(
+        [&](const core::Progress& progress) { report(0.5 * progress.fraction, progress.detail); });
     std::vector<packing::LubachevskyStillinger::Parameters> wanted;
     for (int number = 0; number < packings; ++number)
       wanted.push_back(params.packing_of(kind, number));
-    make_packings_ahead<packing::LubachevskyStillinger>(wanted, params.source, detail::judge, shown, pool);
+    make_packings_ahead<packing::LubachevskyStillinger>(wanted, params.source, detail::judge, packs, pool);
 
-    struct Key {
-      double coordination;
-      Law law;
-    };
-    std::vector<Key> keys;
-    for (const double z : params.coordinations)
-      for (const Law law : params.laws)
-        keys.push_back({z, law});
-    std::vector<double> density, pressure;
-    bool all_jammed = true; // below the density asked for
-    std::vector<std::vector<std::array<MeasuredModuli, 3>>> moduli(keys.size()); // [keys][packings]
-    std::vector<std::vector<double>> eps(keys.size()), eps_cell(keys.size());
+    detail::Samples samples(params);
     for (int number = 0; number < packings; ++number) {
-      const auto made = obtain_packing<packing::LubachevskyStillinger>(
-          wanted[static_cast<std::size_t>(number)], params.source, detail::judge, shown, &pool);
-      const auto& packing = made.packing;
-      density.push_back(packing.particles.solid_volume() / packing.box.volume());
-      pressure.push_back(made.reported ? packing.report.pressure : std::numeric_limits<double>::quiet_NaN());
+      const auto obtained = obtain_packing<packing::LubachevskyStillinger>(
+          wanted[static_cast<std::size_t>(number)], params.source, detail::judge, packs, &pool);
       if (given)
-        kind = {detail::sample_cov(packing.particles),
-                packing.box.periodic[0] ? packing::Boundary::periodic : packing::Boundary::walls, false};
-      all_jammed &= made.reported && packing.report.reason == packing::StopReason::pressure_limit;
-      for (std::size_t c = 0; c < keys.size(); ++c) {
-        const double fraction =
-            (number + static_cast<double>(c) / static_cast<double>(keys.size())) / packings;
-        monitor.report({kind.name(), share * (static_cast<double>(k) + 0.5 + 0.5 * fraction),
-                        "Z " + core::to_text(keys[c].coordination)});
-        const auto body =
-            simulation::make_specimen(packing.particles, packing.box, keys[c].coordination, pool);
-        eps[c].push_back(body.eps);
-        std::optional<simulation::Specimen> cell;
-        if (packing.box.periodic[0])
-          cell =
-              simulation::make_periodic_specimen(packing.particles, packing.box, keys[c].coordination, pool);
-        eps_cell[c].push_back(cell ? cell->eps : 0);
-        moduli[c].push_back(detail::measure(body, cell ? &*cell : nullptr, keys[c].law, pool, {}));
-      }
+        kind = {detail::sample_cov(obtained.packing.particles),
+                obtained.packing.box.periodic[0] ? packing::Boundary::periodic : packing::Boundary::walls,
+                false};
+      samples.add(obtained, pool, [&](double fraction, const detail::Samples::Condition& condition) {
+        report(0.5 + 0.5 * (number + fraction) / packings, "Z " + core::to_text(condition.coordination));
+      });
     }
-    if (all_jammed && !kind.jammed) { // growing on gives the same packings once more
+    if (samples.all_jammed && !kind.jammed) { // growing on gives the same packings once more
       kind.jammed = true;
       ++k;
     }
-    result.kinds.push_back(
-        {kind, homogenize::sample_statistics(density), homogenize::sample_statistics(pressure)});
-    for (std::size_t c = 0; c < keys.size(); ++c)
-      for (const Measure measure : all_measures) {
-        if (!moduli[c].front().front().has(measure))
-          continue;
-        Case one{kind,
-                 keys[c].coordination,
-                 keys[c].law,
-                 measure,
-                 {},
-                 {},
-                 homogenize::sample_statistics(measure == Measure::periodic ? eps_cell[c] : eps[c]).mean};
-        for (std::size_t m = 0; m < 3; ++m) {
-          std::vector<double> E, nu;
-          for (const auto& of_packing : moduli[c]) {
-            E.push_back(of_packing[m][measure].youngs_modulus / materials()[m].micro.youngs_modulus);
-            nu.push_back(of_packing[m][measure].poissons_ratio);
-          }
-          one.relative_modulus[m] = homogenize::sample_statistics(E);
-          one.poissons_ratio[m] = homogenize::sample_statistics(nu);
-        }
-        result.cases.push_back(one);
-      }
+    result.kinds.push_back({kind, homogenize::sample_statistics(samples.density),
+                            homogenize::sample_statistics(samples.pressure)});
+    for (const auto& condition : samples.conditions)
+      for (const Measure measure : all_measures)
+        if (condition.moduli.front().front().has(measure))
+          result.cases.push_back(detail::case_of(kind, condition, measure));
   }
   return result;
 }
