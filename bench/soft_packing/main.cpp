@@ -1,7 +1,7 @@
 // Repulsion of soft spheres, nanoseconds in every sphere and evaluation of all forces: a hand-written loop over the same
 // pairs (each once, with the square root, forces scattered), beside the library's kernel (each pair twice, four at a
 // time, forces and the sums of the descent). Then whole packings: 10,000 and 100,000 spheres to the jamming point, and as
-// many as the environment variable CDEM_PACKING_SPHERES says (on two threads, with progress).
+// many as the environment variable CDEM_PACKING_SPHERES says (on two threads or CDEM_PACKING_THREADS, with progress).
 
 #include <cdem/core/parallel.hpp>
 #include <cdem/core/random.hpp>
@@ -159,9 +159,10 @@ BENCHMARK(packing_to_jamming)
     ->Unit(benchmark::kSecond);
 
 [[maybe_unused]] const bool more = [] {
+  const char* threads = std::getenv("CDEM_PACKING_THREADS");
   if (const char* spheres = std::getenv("CDEM_PACKING_SPHERES"))
     benchmark::RegisterBenchmark("packing_to_jamming", packing_to_jamming)
-        ->Args({std::atoll(spheres), 2})
+        ->Args({std::atoll(spheres), threads ? std::atoll(threads) : 2})
         ->Iterations(1)
         ->UseRealTime()
         ->Unit(benchmark::kSecond);

@@ -304,10 +304,11 @@ private:
   void relax(std::uint64_t most_evaluations) {
     const std::uint64_t most = std::min<std::uint64_t>(most_evaluations, parameters_.most_evaluations);
     first_residual_ = 0;
+    first_evaluation_ = system_.evaluations();
     for (report_.balanced = false;; system_.advance()) {
       system_.evaluate();
       if (monitor_.stop_requested() || Clock::now() - reported_ > std::chrono::milliseconds(250))
-        report_progress();
+        report_progress(most);
       const bool pressed = goal_ == 0 || std::abs(system_.overlap() / goal_ - 1) < parameters_.tolerance;
       if (pressed && system_.evaluations() >= least_evaluations_ &&
           system_.residual() <= parameters_.tolerance) {
@@ -334,14 +335,27 @@ private:
     report_.jamming_density = least.density - slope * least.overlap;
   }
 
-  void report_progress() {
+  /// Share of the run that lies before a state: in the first two spheres travel and lists are renewed often.
+  double share_before(double stage) const {
+    const auto work = [](double k) { return k < 1 ? 3 * k : k < 2 ? 3 + 2 * (k - 1) : k + 3; };
+    return work(stage) / work(stages_);
+  }
+
+  /// @param most  evaluations at which the present state is left at the latest
+  void report_progress(std::uint64_t most = 0) {
     reported_ = Clock::now();
     if (fraction_ < 1) {
-      const double residual = std::max(system_.residual(), parameters_.tolerance);
-      first_residual_ = std::max(first_residual_, residual);
-      const double part = std::log(first_residual_ / residual) /
-                          std::max(std::log(first_residual_ / parameters_.tolerance), 1e-9);
-      fraction_ = std::max(fraction_, std::min((stage_ + std::min(part, 1.0)) / stages_, 0.99));
+      double part; // of the present state: on the way evaluations run out sooner than forces balance
+      if (most < parameters_.most_evaluations) {
+        part = static_cast<double>(system_.evaluations() - first_evaluation_) /
+               static_cast<double>(std::max(most, first_evaluation_ + 1) - first_evaluation_);
+      } else {
+        const double residual = std::max(system_.residual(), parameters_.tolerance);
+        first_residual_ = std::max(first_residual_, residual);
+        part = std::log(first_residual_ / residual) /
+               std::max(std::log(first_residual_ / parameters_.tolerance), 1e-9);
+      }
+      fraction_ = std::max(fraction_, std::min(share_before(stage_ + std::min(part, 1.0)), 0.99));
     }
     monitor_.report({"packing", fraction_,
                      "density " + core::to_text(density()) + ", overlap " + core::to_text(system_.overlap()) +
@@ -400,6 +414,7 @@ private:
   std::vector<State> states_;
   double goal_ = 0;                     ///< wanted overlap, 0 at a fixed scale
   std::uint64_t least_evaluations_ = 0; ///< before which no state is taken for balanced
+  std::uint64_t first_evaluation_ = 0;  ///< of the present state
   double final_scale_ = 0;              ///< to which the radii are set at the end, 0 for the present one
   double first_residual_ = 0, fraction_ = 0;
   int stage_ = 0, stages_ = 1;
