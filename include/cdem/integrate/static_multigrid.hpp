@@ -69,7 +69,7 @@ public:
     std::size_t floating_clusters = 0;  ///< connected parts that nothing holds or loads: left at rest
     std::size_t floating_particles = 0; ///< their particles
     std::size_t loose_clusters =
-        0; ///< parts that move under constraints but are not held in every rigid motion
+        0; ///< parts that move under constraints or loads and are not held in every rigid motion
     /// Motions without energy that must exist: rotations that no bond resists, and by Maxwell's count the other free
     /// unknowns less the bonds' independent resistances. 0 for beams; a lower bound for springs.
     std::size_t floppy_modes_at_least = 0;
