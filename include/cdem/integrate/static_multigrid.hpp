@@ -317,10 +317,6 @@ private:
           break;
         scale = norm;
         norm = step(hierarchy, work / curvature, scale);
-        if (!support_.drifting.empty()) {
-          remove_drift(residual_);
-          pass_residual(hierarchy, scale);
-        }
         report_.history.push_back(norm / reference);
         tell(norm, wanted, reference);
       }
@@ -426,7 +422,8 @@ private:
   /// passes it on.
   double step(detail::Hierarchy& hierarchy, double length, double scale) {
     pending_ = length;
-    return std::sqrt(sum_over_particles([&](std::size_t i) {
+    const bool drifts = !support_.drifting.empty();
+    const double norm = std::sqrt(sum_over_particles([&](std::size_t i) {
       if (support_.held[i] == 0)
         for (int c = 0; c < 8; ++c)
           residual_[i].component[c] += length * image_[i].component[c];
@@ -434,9 +431,15 @@ private:
         for (int d = 0; d < 6; ++d)
           if (!(support_.held[i] >> d & 1))
             residual_[i][d] += length * image_[i][d];
-      pass_residual(hierarchy, i, scale);
+      if (!drifts)
+        pass_residual(hierarchy, i, scale);
       return squared(residual_[i]);
     }));
+    if (drifts) {
+      remove_drift(residual_);
+      pass_residual(hierarchy, scale);
+    }
+    return norm;
   }
 
   /// Takes the mean force or translation out of a periodic body that nothing holds. Neither residual nor direction may keep
